@@ -4,7 +4,6 @@
 #include <numbers>
 #include <utility>
 
-#include "mjarm/core/linear_algebra.hpp"
 #include "mjarm/core/units.hpp"
 #include "mjarm/kinematics/axis_chain_internal.hpp"
 #include "mjarm/kinematics/fk.hpp"
@@ -52,31 +51,43 @@ class SmoothLength {
 
   double value(const JointVec& t, double epsilon) const {
     double sum = 0;
-    for (int i = 0; i + 1 < n_; ++i) {
-      sum += std::hypot((point(t, i + 1) - point(t, i)).norm(), epsilon);
-    }
+    for (int i = 0; i + 1 < n_; ++i) sum += smooth(point(t, i + 1) - point(t, i), epsilon);
     return sum;
   }
 
-  /// Newton's step at `t`, with the decrease that it promises.
+  /// Newton's step at `t`, with the decrease that it promises. A point's piece meets the next one's
+  /// alone, so that the second derivatives are a tridiagonal matrix.
   std::pair<JointVec, double> newton_step(const JointVec& t, double epsilon) const {
-    Matrix H = 1e-9 * Matrix::Identity(n_, n_);
     JointVec g = JointVec::Zero(n_);
+    JointVec diagonal = JointVec::Constant(n_, 1e-9), beside = JointVec::Zero(n_);
     for (int i = 0; i + 1 < n_; ++i) {
+      const Eigen::Vector3d& a = axes_[i].a_W;  // how d moves with its two ends: -a and b
+      const Eigen::Vector3d& b = axes_[i + 1].a_W;
       const Eigen::Vector3d d = point(t, i + 1) - point(t, i);
-      const double r = std::hypot(d.norm(), epsilon);
-      Eigen::Matrix<double, 3, 2> D;  // how d moves with the places of its two ends
-      D << -axes_[i].a_W, axes_[i + 1].a_W;
-      const Eigen::Vector2d pull = D.transpose() * d / r;
-      g.segment<2>(i) += pull;
-      H.block<2, 2>(i, i) += (D.transpose() * D - pull * pull.transpose()) / r;
+      const double r = smooth(d, epsilon);
+      const double pull_a = -a.dot(d) / r, pull_b = b.dot(d) / r;
+      g[i] += pull_a;
+      g[i + 1] += pull_b;
+      diagonal[i] += (a.dot(a) - pull_a * pull_a) / r;
+      diagonal[i + 1] += (b.dot(b) - pull_b * pull_b) / r;
+      beside[i] = (-a.dot(b) - pull_a * pull_b) / r;
     }
-    const JointVec step = -solve_symmetric(H, g);
+    JointVec step = -g;
+    for (int i = 1; i < n_; ++i) {
+      const double share = beside[i - 1] / diagonal[i - 1];
+      diagonal[i] -= share * beside[i - 1];
+      step[i] -= share * step[i - 1];
+    }
+    step[n_ - 1] /= diagonal[n_ - 1];
+    for (int i = n_ - 1; i-- > 0;) step[i] = (step[i] - beside[i] * step[i + 1]) / diagonal[i];
     return {step, -g.dot(step)};
   }
 
  private:
-  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxDof, kMaxDof>;
+  static double smooth(const Eigen::Vector3d& d, double epsilon) {
+    return std::sqrt(d.squaredNorm() + epsilon * epsilon);
+  }
+
   const HingeAxis* axes_;
   int n_;
 };

@@ -127,6 +127,15 @@ IkSolver::IkSolver(const Arm& arm, IkOptions options)
   if (!six_ || !six_->is_exact()) general_ = GeneralSix::recognise(chain_);
 }
 
+IkSolver IkSolver::with(IkOptions options) const {
+  if (options.closed_form != options_.closed_form || options.task != options_.task) {
+    return IkSolver(arm_, std::move(options));
+  }
+  IkSolver out(*this);
+  out.options_ = std::move(options);
+  return out;
+}
+
 Result<IkSolution, IkFailure> IkSolver::solve(const Pose& X_WT,
                                               std::span<const double> q_seed) const noexcept {
   IkGoal goal;

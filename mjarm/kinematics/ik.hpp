@@ -93,6 +93,8 @@ class IkSolver {
   [[nodiscard]] static Result<IkSolver> create(const Arm& arm, IkOptions options);
   /// For options that are known to be in their ranges: with others every solve is bad_input.
   explicit IkSolver(const Arm& arm, IkOptions options = {});
+  /// The same arm with other options, whose geometry need not be looked at again.
+  [[nodiscard]] IkSolver with(IkOptions options) const;
 
   /// Finds q with fk(q) within tolerance of `X_WT`. Where a closed form is known (six_axis.hpp,
   /// seven_axis.hpp), the answer nearest to `q_seed` by the largest joint distance, then by the

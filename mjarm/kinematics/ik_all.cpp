@@ -18,7 +18,7 @@ double distance(const JointVec& a, const JointVec& b) { return (a - b).cwiseAbs(
 /// Collects the distinct ones of what is given to it.
 class Answers {
  public:
-  explicit Answers(double same) : same_(same) {}
+  explicit Answers(double same) : same_(same) { list_.reserve(16); }
 
   [[nodiscard]] bool knows(const JointVec& q) const {
     return std::any_of(list_.begin(), list_.end(),
@@ -104,21 +104,21 @@ Result<std::vector<IkSolution>, IkFailure> solve_all(const IkSolver& ik, const P
   IkGoal goal;
   const bool sane = detail::check_goal(ik.chain(), ik.options(), X_WT, q_seed, goal);
   Answers answers(options.same);
+  bool known = false;  // every branch, or what random starts find of them
+  if (sane && ik.six_axis()) known = add_branches(*ik.six_axis(), ik, goal, answers);
   if (sane && ik.general_six()) {
-    if (ik.six_axis()) add_branches(*ik.six_axis(), ik, goal, answers);
+    known = true;
     if (!add_branches(*ik.general_six(), ik, goal, answers)) {
       add_samples(ik, goal, options.starts, answers);
     }
   }
-  if (answers.list().empty()) {
+  if (!known || answers.list().empty()) {
     const auto first = ik.solve(X_WT, q_seed);
-    if (!first) return fail(first.error());
-    answers.add(*first);
-    if (ik.six_axis()) {
-      add_branches(*ik.six_axis(), ik, goal, answers);
-    } else if (ik.seven_axis()) {
+    if (!first && answers.list().empty()) return fail(first.error());
+    if (first) answers.add(*first);
+    if (ik.seven_axis()) {
       add_branches(*ik.seven_axis(), ik, goal, answers);
-    } else {
+    } else if (!ik.six_axis()) {
       add_samples(ik, goal, options.starts, answers);
     }
   }

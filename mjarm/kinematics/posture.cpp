@@ -18,7 +18,7 @@ IkOptions geometry_alone(IkOptions options) {
 }  // namespace
 
 PostureCost::PostureCost(const IkSolver& ik, PostureWeights weights)
-    : ik_(ik.arm(), geometry_alone(ik.options())), weights_(weights) {}
+    : ik_(ik.with(geometry_alone(ik.options()))), weights_(weights) {}
 
 /// 0 where every joint is in the middle of its range, 1 where each is at a limit.
 double PostureCost::off_middle(std::span<const double> q) const noexcept {

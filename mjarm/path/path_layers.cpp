@@ -5,7 +5,6 @@
 #include <numbers>
 #include <numeric>
 #include <tuple>
-#include <unordered_map>
 #include <utility>
 
 #include "mjarm/core/finite.hpp"
@@ -54,7 +53,7 @@ std::optional<JointVec> placed(const Chain& chain, const JointVec& q, const Join
     double& value = out[k];
     value = q[i];
     if (!chain.slide[k]) {
-      value += kFullTurn * std::round((q_near[i] - value) / kFullTurn);
+      value += kFullTurn * static_cast<double>(std::llrint((q_near[i] - value) / kFullTurn));
       if (value > chain.upper[k] + kRounding) value -= kFullTurn;
       if (value < chain.lower[k] - kRounding) value += kFullTurn;
     }
@@ -84,8 +83,8 @@ std::uint64_t winding(const JointVec& q, const JointVec& q_base) {
   constexpr std::uint64_t kMost = 1U << 10;  // turns, more than limits leave
   std::uint64_t out = 0;
   for (Eigen::Index i = 0; i < q.size(); ++i) {
-    const double turns = std::nearbyint((q[i] - q_base[i]) / kFullTurn);
-    out = out * kMost + (static_cast<std::uint64_t>(std::llrint(turns)) % kMost);
+    const auto turns = static_cast<std::uint64_t>(std::llrint((q[i] - q_base[i]) / kFullTurn));
+    out = out * kMost + turns % kMost;
   }
   return out;
 }
@@ -95,10 +94,15 @@ std::uint64_t winding(const JointVec& q, const JointVec& q_base) {
 bool is_regular(const Jacobian& J, double least) {
   const bool wide = J.cols() >= 6;
   const Eigen::Index n = wide ? 6 : J.cols();
-  double L[6][6];
+  double L[6][6] = {};  // the product first, then its factor
+  for (Eigen::Index k = 0; wide && k < J.cols(); ++k) {
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      for (Eigen::Index j = 0; j <= i; ++j) L[i][j] += J(i, k) * J(j, k);
+    }
+  }
   for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index j = 0; j <= i; ++j) {
-      double sum = wide ? J.row(i).dot(J.row(j)) : J.col(i).dot(J.col(j));
+      double sum = wide ? L[i][j] : J.col(i).dot(J.col(j));
       if (i == j) sum -= least * least;
       for (Eigen::Index k = 0; k < j; ++k) sum -= L[i][k] * L[j][k];
       if (i == j && !(sum > 0)) return false;
@@ -110,10 +114,13 @@ bool is_regular(const Jacobian& J, double least) {
 
 /// Sorts `layer` and keeps the best `max`.
 void keep_best(Layer& layer, std::size_t max) {
+  if (layer.size() < 2) return;
   std::vector<std::size_t> order(layer.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return layer[a].rank < layer[b].rank; });
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    if (layer[a].rank < layer[b].rank) return true;
+    return !(layer[b].rank < layer[a].rank) && a < b;
+  });
   if (order.size() > max) order.resize(max);
   Layer sorted;
   sorted.reserve(order.size());
@@ -123,10 +130,12 @@ void keep_best(Layer& layer, std::size_t max) {
 
 }  // namespace
 
-Arm without_limits(Arm arm) {
+IkSolver without_limits(const IkSolver& ik) {
+  Arm arm = ik.arm();
+  if ((arm.limits.upper - arm.limits.lower).minCoeff() == kInfinity) return ik;
   arm.limits.lower.setConstant(-kInfinity);
   arm.limits.upper.setConstant(kInfinity);
-  return arm;
+  return IkSolver(arm, ik.options());
 }
 
 bool TrackRank::operator<(const TrackRank& other) const noexcept {
@@ -137,9 +146,9 @@ bool TrackRank::operator<(const TrackRank& other) const noexcept {
 PathLayers::PathLayers(const IkSolver& ik, const PathOptions& options)
     : ik_(ik),
       options_(options),
-      all_(ik.arm(), without_predicate(ik.options())),
-      near_(ik.arm(), near_only(ik.options(), options.max_step)),
-      boundless_(without_limits(ik.arm()), without_predicate(ik.options())),
+      all_(ik.with(without_predicate(ik.options()))),
+      near_(ik.with(near_only(ik.options(), options.max_step))),
+      boundless_(without_limits(ik).with(without_predicate(ik.options()))),
       chain_(ik.chain()) {
   if (options.best_posture) posture_.emplace(ik);
 }
@@ -264,38 +273,52 @@ Layer PathLayers::first(const Pose& X_WT, const JointVec& q_start) const {
   return layer;
 }
 
-Layer PathLayers::next(const Pose& X_before, const Pose& X_WT, const Layer& before) const {
+Layer PathLayers::next(const Pose& X_before, const Pose& X_WT, const Layer& before,
+                       std::vector<Branch>& branches) const {
   const JointVec longest = longest_step(X_before, X_WT);
-  Layer layer = ik_.six_axis() ? join(X_WT, before, longest) : follow(X_WT, before, longest);
-  keep_best(layer, ik_.six_axis() ? kMaxNodes : kMaxFollowed);
+  if (!ik_.six_axis()) {
+    Layer layer = follow(X_WT, before, longest);
+    keep_best(layer, kMaxFollowed);
+    return layer;
+  }
+  if (branches.empty()) branches = branches_at(X_WT, before.front().q);
+  Layer layer = join(before, longest, branches);
+  keep_best(layer, kMaxNodes);
   return layer;
 }
 
-/// Closed form of six axes: every branch from every answer before.
-Layer PathLayers::join(const Pose& X_WT, const Layer& before, const JointVec& longest) const {
-  struct Branch {
-    JointVec q;
-    std::optional<Room> room;
-    bool looked_at = false;
-    std::unordered_map<std::uint64_t, std::size_t> nodes;  // its windings in the new layer
-  };
-  Layer layer;
+std::vector<PathLayers::Branch> PathLayers::branches_at(const Pose& X_WT,
+                                                        const JointVec& q_seed) const {
   std::vector<Branch> branches;
   for (const Pose& X : allowed(X_WT)) {
-    const auto answers = solve_all(boundless_, X, as_span(before.front().q));
+    const auto answers = solve_all(boundless_, X, as_span(q_seed));
     if (!answers) continue;
-    for (const IkSolution& answer : *answers) branches.push_back({answer.q, {}, false, {}});
+    for (const IkSolution& answer : *answers) branches.push_back({answer.q});
   }
+  return branches;
+}
+
+/// Closed form of six axes: every branch from every answer before.
+Layer PathLayers::join(const Layer& before, const JointVec& longest,
+                       std::vector<Branch>& branches) const {
+  Layer layer;
+  layer.reserve(before.size());
+  // By branch: its windings in the new layer, few, and the last one most often.
+  std::vector<std::vector<std::pair<std::uint64_t, std::size_t>>> nodes(branches.size());
   for (std::size_t i = 0; i < before.size(); ++i) {
-    for (Branch& branch : branches) {
+    for (std::size_t k = 0; k < branches.size(); ++k) {
+      Branch& branch = branches[k];
       const auto q = placed(ik_.chain(), branch.q, before[i].q, longest);
       if (!q) continue;
       if (!branch.looked_at) branch.room = room(*q);
       branch.looked_at = true;
       if (!branch.room) continue;
       const TrackRank rank = extended(before[i], *q, *branch.room, longest);
-      const auto [known, is_new] = branch.nodes.try_emplace(winding(*q, branch.q), layer.size());
-      if (is_new) {
+      const std::uint64_t turns = winding(*q, branch.q);
+      const auto known = std::find_if(nodes[k].rbegin(), nodes[k].rend(),
+                                      [&](const auto& node) { return node.first == turns; });
+      if (known == nodes[k].rend()) {
+        nodes[k].emplace_back(turns, layer.size());
         layer.push_back({*q, static_cast<int>(i), rank});
       } else if (rank < layer[known->second].rank) {
         layer[known->second] = {*q, static_cast<int>(i), rank};

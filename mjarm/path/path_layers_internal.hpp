@@ -30,8 +30,8 @@ struct TrackNode {
 /// The answers to one pose that tracks lead to, best first.
 using Layer = std::vector<TrackNode>;
 
-/// The same arm with joints that turn as far as they like.
-[[nodiscard]] Arm without_limits(Arm arm);
+/// For the same arm with joints that turn as far as they like.
+[[nodiscard]] IkSolver without_limits(const IkSolver& ik);
 
 /// Makes the answers to each pose out of those to the pose before.
 class PathLayers {
@@ -40,6 +40,13 @@ class PathLayers {
   struct Room {
     double tightness = 0;                  ///< limits left aside
     double clearance = PostureCost::kFar;  ///< [m], where it is looked at
+  };
+
+  /// One way in which an arm of six axes answers a pose, in one winding, limits left aside.
+  struct Branch {
+    JointVec q;
+    std::optional<Room> room = {};  ///< none: refused, or not looked at
+    bool looked_at = false;
   };
 
   static constexpr std::size_t kMaxNodes = 512;    ///< a layer; the best are kept
@@ -51,7 +58,9 @@ class PathLayers {
   /// All answers to the first pose; empty where there is none.
   [[nodiscard]] Layer first(const Pose& X_WT, const JointVec& q_start) const;
   /// All that tracks lead to at X_WT from `before`, which is not empty, at the pose X_before.
-  [[nodiscard]] Layer next(const Pose& X_before, const Pose& X_WT, const Layer& before) const;
+  /// @param branches  what is known of X_WT, which other tracks need again; empty: nothing yet.
+  [[nodiscard]] Layer next(const Pose& X_before, const Pose& X_WT, const Layer& before,
+                           std::vector<Branch>& branches) const;
 
   /// The answer to X_WT that goes on from `q`, limits and whatever may be touched left aside: the
   /// nearest one. None where there is no answer.
@@ -68,7 +77,9 @@ class PathLayers {
 
  private:
   [[nodiscard]] std::vector<Pose> allowed(const Pose& X_WT) const;
-  [[nodiscard]] Layer join(const Pose& X_WT, const Layer& before, const JointVec& longest) const;
+  [[nodiscard]] std::vector<Branch> branches_at(const Pose& X_WT, const JointVec& q_seed) const;
+  [[nodiscard]] Layer join(const Layer& before, const JointVec& longest,
+                           std::vector<Branch>& branches) const;
   [[nodiscard]] Layer follow(const Pose& X_WT, const Layer& before, const JointVec& longest) const;
   [[nodiscard]] std::vector<JointVec> aside(const JointVec& q) const;
   [[nodiscard]] std::optional<Room> room(const JointVec& q) const;

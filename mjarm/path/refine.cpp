@@ -18,7 +18,7 @@ constexpr double kShortest = 1e-5;
 class Refiner {
  public:
   Refiner(const IkSolver& ik, const Curve& curve, const CurveOptions& options)
-      : ik_(ik.arm(), seeded(ik.options(), options.path.max_step)),
+      : ik_(ik.with(seeded(ik.options(), options.path.max_step))),
         chain_(ik.chain()),
         curve_(curve),
         options_(options) {}

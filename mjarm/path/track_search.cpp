@@ -8,6 +8,10 @@ namespace mjarm::detail {
 namespace {
 
 constexpr std::size_t kSegment = 512;  // layers that are kept at a time
+constexpr std::size_t kKnown = 4096;   // poses of which branches are kept
+
+/// The branches of the first poses, for all tracks that are looked at.
+using KnownBranches = std::vector<std::vector<PathLayers::Branch>>;
 
 /// Where a segment of layers begins.
 struct Checkpoint {
@@ -29,10 +33,12 @@ int walk_back(std::span<const Layer> layers, std::size_t at, int index, std::vec
 /// The best track from the answers to the first pose that are given, of those better than `bound`
 /// where that is given. Only the layers of one segment are kept; to walk back through the ones
 /// before, each is made again from its first layer.
-Track track_from(const PathLayers& layers, std::span<const Pose> poses, Layer first,
-                 const std::optional<TrackRank>& bound) {
+Track track_from(const PathLayers& layers, std::span<const Pose> poses, KnownBranches& known,
+                 Layer first, const std::optional<TrackRank>& bound) {
   const auto next = [&](std::size_t at, const Layer& before) {
-    Layer layer = layers.next(poses[at - 1], poses[at], before);
+    std::vector<PathLayers::Branch> unkept;
+    Layer layer =
+        layers.next(poses[at - 1], poses[at], before, at < known.size() ? known[at] : unkept);
     if (bound) std::erase_if(layer, [&](const TrackNode& node) { return !(node.rank < *bound); });
     return layer;
   };
@@ -70,14 +76,14 @@ Track track_from(const PathLayers& layers, std::span<const Pose> poses, Layer fi
 /// The best track as if joints had no limits, where it keeps them: no other can be better. Of an
 /// arm of six axes it takes one answer a branch, in place of as many as that has windings.
 std::optional<Track> track_without_limits(const PathLayers& layers, std::span<const Pose> poses,
-                                          const JointVec& q_start) {
+                                          KnownBranches& known, const JointVec& q_start) {
   const PathOptions& options = layers.options();
   if (!layers.ik().six_axis() || options.keep_start || options.best_posture) return std::nullopt;
-  const IkSolver ik(without_limits(layers.ik().arm()), layers.ik().options());
+  const IkSolver ik = layers.boundless().with(layers.ik().options());
   const PathLayers free(ik, options);
   Layer first = free.first(poses[0], q_start);
   if (first.empty()) return std::nullopt;
-  Track track = track_from(free, poses, std::move(first), {});
+  Track track = track_from(free, poses, known, std::move(first), {});
   if (track.is_stopped || track.q.size() < poses.size()) return std::nullopt;
   const double tightness = track.last.front().rank.tightness;
   const auto fits = [&](const JointVec& q) { return layers.fits(q, tightness); };
@@ -93,14 +99,15 @@ Track find_track(const PathLayers& layers, std::span<const Pose> poses, const Jo
   if (is_stopped(layers.options().stop)) return {.is_stopped = true};
   Layer first = layers.first(poses[0], q_start);
   if (first.empty()) return {};
-  Track known = track_from(layers, poses, {first.front()}, {});
-  const bool whole = known.q.size() == poses.size();
-  if (first.size() == 1 || known.is_stopped) return known;
-  if (whole && known.last.front().rank < first[1].rank) return known;
-  if (auto free = track_without_limits(layers, poses, q_start)) return std::move(*free);
-  if (!whole) return track_from(layers, poses, std::move(first), {});
-  Track better = track_from(layers, poses, std::move(first), known.last.front().rank);
-  return better.is_stopped || better.q.size() == poses.size() ? better : known;
+  KnownBranches known(std::min(poses.size(), kKnown));
+  Track one = track_from(layers, poses, known, {first.front()}, {});
+  const bool whole = one.q.size() == poses.size();
+  if (first.size() == 1 || one.is_stopped) return one;
+  if (whole && one.last.front().rank < first[1].rank) return one;
+  if (auto free = track_without_limits(layers, poses, known, q_start)) return std::move(*free);
+  if (!whole) return track_from(layers, poses, known, std::move(first), {});
+  Track better = track_from(layers, poses, known, std::move(first), one.last.front().rank);
+  return better.is_stopped || better.q.size() == poses.size() ? better : one;
 }
 
 }  // namespace mjarm::detail

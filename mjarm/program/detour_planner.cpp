@@ -92,8 +92,8 @@ std::optional<std::string> DetourPlanner::touches(const JointVec& q) const {
 }
 
 std::optional<std::string> DetourPlanner::least_touch(const JointVec& q, const Pose& X_WT) const {
-  const auto answers = solve_all(IkSolver(robot_.arm, {.task = ik_.options().task}), X_WT,
-                                 as_span(q), {.max = kMaxGoals});
+  const auto answers =
+      solve_all(ik_.with({.task = ik_.options().task}), X_WT, as_span(q), {.max = kMaxGoals});
   if (!answers) return std::nullopt;
   std::optional<MoveMeasures> best;
   for (const IkSolution& answer : *answers) {

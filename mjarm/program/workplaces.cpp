@@ -65,7 +65,7 @@ std::shared_ptr<Tool> Workplaces::make(const SceneState& scene, const Arm& of_to
   world.qpos = scene.qpos;
   const double margin = scene.attached.empty() ? 0 : kCarryingMargin;
   return std::make_shared<Tool>(
-      Tool{arm, IkSolver(arm, {.task = options.task}), ik, judge,
+      Tool{arm, ik.with({.task = options.task}), ik, judge,
            DetourPlanner({model_, arm}, ik, judge, std::move(world), options_.stop, margin),
            AnswerChoice(ik, judge.clearance()), !scene.qpos.empty()});
 }

@@ -132,7 +132,7 @@ class IkDesk::Worker {
 
   /// The answers in the branch that was asked for touch something, or there are none.
   NoAnswer not_that_branch(const IkRequest& request, const std::vector<IkSolution>& others) {
-    const IkSolver geometry(ik_.arm(), job_.ik);
+    const IkSolver geometry = ik_.with(job_.ik);
     const auto all = solve_all(geometry, request.X_WT, request.q_seed);
     const std::vector<IkSolution> right = all ? of_branch(*all) : std::vector<IkSolution>();
     if (right.empty()) return other_branches(ik_, job_.branch, others);
