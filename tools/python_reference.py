@@ -10,6 +10,8 @@ import pathlib
 import re
 import sys
 
+import catalogue
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / "python" / "mjarm"
 CATALOGUE = ROOT / "python" / "docs" / "zh-CN.txt"
@@ -24,26 +26,8 @@ list of those, an array (n, 4, 4) or a pair of positions (n, 3) and quaternions 
 ITEM = re.compile(r"(- `[^`]+`)(?: \((.*?)\)(?=:|$))?(?:: (.*))?")
 
 
-class Catalogue:
-    """Docstrings in Chinese: `## NAME`, then each piece of its docstring on one line, with its Chinese on indented ones below.
-
-    A piece is a paragraph, an item of a list, the type of an item, or a comment in an example; under `## *` it holds everywhere.
-    """
-
-    def __init__(self, text, file):
-        self.file, self.lines, self.chinese, self.faults = file, {}, {}, []
-        name = key = None
-        for number, line in enumerate(text.splitlines(), 1):
-            if line.startswith("## "):
-                name = line[3:]
-            elif name and line.startswith("  "):
-                self.chinese[key] = self.chinese.get(key, "") + line.strip()
-            elif name and line:
-                key = name, line
-                if key in self.lines:
-                    self.faults.append(f"{file}:{number}: {name}: stands twice: {line}")
-                self.lines[key] = number
-        self.unused = dict(self.lines)
+class Docstrings(catalogue.Catalogue):
+    """A piece is a paragraph, an item of a list, the type of an item, or a comment in an example."""
 
     def __call__(self, name, doc):
         """A docstring, as doc_of() made it, in Chinese: the same lists and the same code."""
@@ -58,18 +42,6 @@ class Catalogue:
             return self.piece(name, " ".join(text.split()))
         head, kind, words = item.groups()
         return head + (f"（{self.piece(name, kind)}）" if kind else "") + (f"：{self.piece(name, words)}" if words else "")
-
-    def piece(self, name, english):
-        key = (name, english) if (name, english) in self.lines else ("*", english)
-        self.unused.pop(key, None)
-        if key not in self.chinese:
-            self.faults.append(f"{self.file}: {name}: has no Chinese: {english}")
-        return self.chinese.get(key, english)
-
-    def all_faults(self):
-        """A line each: what has no Chinese, and Chinese that nothing asked for."""
-        unused = (f"{self.file}:{number}: {name}: no docstring says this: {english}" for (name, english), number in self.unused.items())
-        return [*dict.fromkeys(self.faults), *unused]
 
 
 def as_it_is(_, doc):
@@ -166,13 +138,13 @@ def page(stub, say=as_it_is):
     return re.sub(r"\n{3,}", "\n\n", "".join(parts)).rstrip() + "\n"
 
 
-def catalogue():
-    return Catalogue(CATALOGUE.read_text(encoding="utf-8"), CATALOGUE.relative_to(ROOT).as_posix())
+def docstrings():
+    return Docstrings(CATALOGUE.read_text(encoding="utf-8"), CATALOGUE.relative_to(ROOT).as_posix())
 
 
 def main(stub, english):
     english.write_text(page(stub), encoding="utf-8")
-    chinese = catalogue()
+    chinese = docstrings()
     text = page(stub, chinese)
     if faults := chinese.all_faults():
         sys.exit("\n".join(faults))

@@ -53,8 +53,8 @@ def exact(text):
 
 class CatalogueTest(unittest.TestCase):
     def translated(self, chinese, doc=DOC):
-        catalogue = python_reference.Catalogue(chinese, "zh.txt")
-        return catalogue("move", python_reference.doc_of(ast.parse(doc).body[0])), catalogue.all_faults()
+        docstrings = python_reference.Docstrings(chinese, "zh.txt")
+        return docstrings("move", python_reference.doc_of(ast.parse(doc).body[0])), docstrings.all_faults()
 
     def test_what_is_code_or_a_list_stays_so(self):
         text, faults = self.translated(CHINESE)
@@ -63,7 +63,7 @@ class CatalogueTest(unittest.TestCase):
 
     def test_a_docstring_that_was_changed_is_named(self):
         _, faults = self.translated(CHINESE, DOC.replace("Joint values", "Angles"))
-        self.assertEqual(faults, ["zh.txt: move: has no Chinese: Angles [rad or m].", "zh.txt:16: move: no docstring says this: Joint values [rad or m]."])
+        self.assertEqual(faults, ["zh.txt: move: has no Chinese: Angles [rad or m].", "zh.txt:16: move: nothing says this: Joint values [rad or m]."])
 
     def test_english_alone_is_a_fault(self):
         _, faults = self.translated(CHINESE.replace("  立即\n", ""))
@@ -76,10 +76,10 @@ class CatalogueTest(unittest.TestCase):
     def test_what_holds_everywhere_gives_way_to_what_holds_here(self):
         text, faults = self.translated(CHINESE.replace("## move\n", "at once\n  马上\n\n## move\n"))
         self.assertIn("# 立即", text)
-        self.assertEqual(faults, ["zh.txt:11: *: no docstring says this: at once"])
+        self.assertEqual(faults, ["zh.txt:11: *: nothing says this: at once"])
 
     def test_no_unit_shape_or_name_is_lost(self):
-        catalogue = python_reference.catalogue()
+        catalogue = python_reference.docstrings()
         self.assertGreater(len(catalogue.chinese), 400)
         for (name, english), chinese in catalogue.chinese.items():
             if name != "page":  # which has links of its own

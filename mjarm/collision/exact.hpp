@@ -69,7 +69,7 @@ struct CollisionReport {
 /// configuration of an arm, with MuJoCo's rules about which geoms collide (contype and conaffinity,
 /// parent and child, excludes, explicit pairs). Only pairs count that the arm's joints move
 /// against each other (gripper included); a box that lies on the floor does not, nor do two
-/// fingers. Joints off the arm stand as in home_configuration(). Contacts
+/// fingers. Joints off the arm stand as in ExactOptions::qpos. Contacts
 /// are checked even where the file switches them off. Owns its scratch memory: copy it to use it
 /// from another thread.
 class ExactChecker {
@@ -92,7 +92,7 @@ class ExactChecker {
   /// @return bad_input for a wrong size, a number that is not finite, or rules that are not sound.
   [[nodiscard]] Result<CollisionReport> check(std::span<const double> q);
 
-  /// The short way: true where check(q) would be free; false where it would fail.
+  /// The short way: true where check(q) would say free; false also where it would fail.
   [[nodiscard]] bool is_free(std::span<const double> q);
 
   /// [m] The distance of the nearest pair that check(q) would tell is not less, as far as that

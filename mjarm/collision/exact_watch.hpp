@@ -28,9 +28,10 @@ struct NearBodies {
 /// Watches an arm that goes wherever somebody leads it among things that move: tells of short ways
 /// ahead whether they keep the margin, in exact geometry. By MuJoCo's rules about what collides,
 /// but
-///   - fingers count wherever the gripper can have them, so that it can always open and close;
-///   - fingers may touch bodies that can be carried away (those with a free joint);
-///   - a held body goes with the hand and keeps WatchOptions::held_margin from all but the hand.
+/// - fingers count wherever the gripper can have them, so that it can always open and close;
+/// - fingers may touch bodies that can be carried away (those with a free joint);
+/// - a held body goes with the hand and keeps WatchOptions::held_margin from all but the hand.
+///
 /// Pairs that are proved never to meet are left out. Things that move by themselves stand still in
 /// the look ahead. Owns its scratch memory: one a thread.
 class SceneWatch {

@@ -100,7 +100,7 @@ class Curve {
     double s = 0;         ///< parameter of that point; the smallest where several are as near
     double distance = 0;  ///< [m]
   };
-  /// Closed form for straight and round pieces, branch and bound for the others: always global.
+  /// Direct for straight and round pieces, branch and bound for the others: always global.
   [[nodiscard]] Nearest nearest(const Eigen::Vector3d& p) const;
 
  private:

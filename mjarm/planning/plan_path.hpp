@@ -205,7 +205,7 @@ struct PlanTimes {
 };
 
 /// find_path(), where rounds or a time budget are given improve_path(), and finish_path().
-/// @param times  where given, is filled; nothing else of what comes back depends on a clock.
+/// @param times  where given, is filled.
 [[nodiscard]] Result<PlannedPath, PlanFailure> plan_path(const FastChecker& checker,
                                                          std::span<const double> start,
                                                          std::span<const JointVec> goals,

@@ -21,7 +21,7 @@ struct RegionGoalOptions {
   int poses = 16;          ///< drawn in each region at first, besides its middle, >= 0
   int max = 64;            ///< configurations at most at first, those nearest to `q_near`, > 0
   std::uint64_t seed = 1;  ///< same input and seed, same configurations
-  /// Configurations that keep neither are left out, where there are others.
+  /// Configurations that break one of these are left out, where there are others.
   std::optional<TiltLimit> tilt = {};
   std::optional<TaskRegion> within = {};
   StopCheck stop = {};  ///< ends the drawing of poses: what was found so far counts

@@ -36,7 +36,7 @@ struct PathFault {
 /// What was found out about a path.
 struct PathVerdict {
   std::vector<PathFault> faults;                               ///< none: it is valid
-  double clearance = std::numeric_limits<double>::infinity();  ///< [m] the least that was met; of
+  double clearance = std::numeric_limits<double>::infinity();  ///< [m] the least that was met, of
                                                                ///< what is hit at samples
   double cost = 0;                                             ///< [rad or m] sum of L2 lengths
 };

@@ -45,9 +45,10 @@ enum class ReachGripper {
 
 /// Weights of the reward of one step: with d the distance of the tool from the goal and t the turn
 /// that the tool is off (both after the step),
-///   coarse exp(-d / coarse_scale) + fine exp(-d / fine_scale) - distance d
-///   - action mean(a^2) - collision [touching] - limit (joints near a limit, 0 to 1 each)
-///   and with `orientation`: turn_fine exp(-t / turn_scale) - turn t.
+///
+///     coarse exp(-d / coarse_scale) + fine exp(-d / fine_scale) - distance d
+///     - action mean(a^2) - collision [touching] - limit (joints near a limit, 0 to 1 each)
+///     + turn_fine exp(-t / turn_scale) - turn t  // with `orientation`
 struct ReachReward {
   double distance = 2;         ///< [1/m] >= 0
   double coarse = 0.5;         ///< >= 0

@@ -56,11 +56,11 @@ struct TrainingStep {
 
 /// A training with its files in one folder, each of which is whole at any time:
 ///
-///   last.safetensors     everything to go on from, after each iteration
-///   best.safetensors     the policy with the best score so far; both hold the options, see
-///                        `config_of_checkpoint`
-///   progress.csv         one line an iteration
-///   events.out.tfevents.mjarm  the same for TensorBoard
+/// - `last.safetensors`: everything to go on from, after each iteration
+/// - `best.safetensors`: the policy with the best score so far; both hold the options, see
+/// `config_of_checkpoint`
+/// - `progress.csv`: one line an iteration
+/// - `events.out.tfevents.mjarm`: the same for TensorBoard
 ///
 /// A process that is killed loses the iteration it was in, no more. With several ranks the first
 /// writes these files and evaluates; the others keep `last.rank1.safetensors` and so on.

@@ -73,7 +73,8 @@ class Sim {
   void set_ctrl(int actuator, double value);
   /// Pushes `body` (its number in the model) at its centre of mass in every step that comes, until
   /// it is set anew; zeros end it. Part of snapshots, and gone after a reset.
-  /// @param force_W [N], @param torque_W [N m], in the world frame.
+  /// @param force_W   [N] in the world frame.
+  /// @param torque_W  [N m] in the world frame.
   void set_external_force(int body, const Eigen::Vector3d& force_W,
                           const Eigen::Vector3d& torque_W);
   /// Ends all pushes.

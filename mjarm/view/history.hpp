@@ -10,7 +10,7 @@ namespace mjarm::view {
 template <class T>
 class History {
  public:
-  /// @param most  moments kept, >= 1; then the oldest one makes room.
+  /// @param max  moments kept, >= 1; then the oldest one makes room.
   explicit History(std::size_t max) : max_(std::max<std::size_t>(max, 1)) {}
 
   /// Adds a moment after the one that is looked at; those that came after it are forgotten.

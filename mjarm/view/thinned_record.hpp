@@ -14,7 +14,7 @@ namespace mjarm::view {
 template <class T>
 class ThinnedRecord {
  public:
-  /// @param most  moments kept, >= 2.
+  /// @param max  moments kept, >= 2.
   explicit ThinnedRecord(std::size_t max) : max_(std::max<std::size_t>(max, 2)) {}
 
   /// One more step was made; `make()` gives its moment, and is asked only where it is kept.

@@ -14,14 +14,13 @@ import subprocess
 import sys
 import urllib.parse
 
-import cpp_api
-
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 sys.path.insert(0, str(HERE.parent))
 
 import check_layers  # noqa: E402
 import check_links  # noqa: E402
+import cpp_api  # noqa: E402
 
 LANGUAGES = {"en": "C.UTF-8", "zh-CN": "zh_CN.UTF-8"}
 
@@ -31,12 +30,8 @@ PARTS = [
     ({"en": "Use", "zh-CN": "使用"}, ["docs/programs", "docs/identify", "docs/planning", "docs/perception", "docs/viewing", "docs/serve", "docs/learning", "docs/teleop", "docs/data"]),
     ({"en": "In programs", "zh-CN": "编程"}, ["python/README", "docs/python", "python/lerobot_env_mjarm/README", "api/index"]),
     ({"en": "Reference", "zh-CN": "参考"}, ["commands/index", "docs/files", "docs/conventions", "docs/troubleshooting", "docs/windows", "messages", "models/README", "docs/benchmarks"]),
-    ({"en": "Project", "zh-CN": "项目"}, ["docs/architecture", "CONTRIBUTING", "web/README", "docs/roadmap", "CHANGELOG"]),
+    ({"en": "Project", "zh-CN": "项目"}, ["docs/architecture", "CONTRIBUTING", "web/README", "CHANGELOG"]),
 ]
-ENGLISH_ONLY = {
-    "docs/benchmarks": "基准测试",
-    "web/README": "浏览器页面的源码", "docs/roadmap": "路线图", "CHANGELOG": "更新记录",
-}
 THEME_IN_CHINESE = {
     r"(>\s*)On this page(\s*<)": r"\1本页内容\2", r"(>\s*)Next(\s*<)": r"\1下一页\2", r"(>\s*)Previous(\s*<)": r"\1上一页\2", r"(>\s*)Home(\s*<)": r"\1首页\2",
     r"Back to top": "回到顶部", r"(>\s*)Made with": r"\1制作工具：", r"Search finished, found \$\{resultCount\} page\(s\) matching the search query\.":
@@ -45,11 +40,9 @@ THEME_IN_CHINESE = {
 WORDS = {
     "en": {"commands": "Commands", "commands_text": "What the program says about itself: `mjarm COMMAND --help`.",
            "messages": "Messages", "messages_text": "All that the library and the program may say, by topic; `{}` stands for what a message is about. "
-           "What to do about the most frequent ones: [Troubleshooting](docs/troubleshooting.md).",
-           "api": "C++ interface", "only": ""},
+           "What to do about the most frequent ones: [Troubleshooting](docs/troubleshooting.md)."},
     "zh-CN": {"commands": "命令", "commands_text": "程序对自身的说明：`mjarm 命令 --help`。",
-              "messages": "提示与报错", "messages_text": "程序和库可能给出的全部文字，按主题排列；`{}` 处是具体内容。常见问题的原因和解决办法见[排错](docs/troubleshooting.md)。",
-              "api": "C++ 接口", "only": "```{note}\n本页目前只有英文。\n```\n"},
+              "messages": "提示与报错", "messages_text": "程序和库可能给出的全部文字，按主题排列；`{}` 处是具体内容。常见问题的原因和解决办法见[排错](docs/troubleshooting.md)。"},
 }
 
 
@@ -59,13 +52,8 @@ def pages(names=tuple(name for _, part in PARTS for name in part)):
     return [name for name in found if not name.endswith(".zh-CN")]
 
 
-def has_own(name, language):
-    return language == "en" or (ROOT / f"{name}.{language}.md").exists()
-
-
 def source_of(name, language):
-    """The file of a page in that language, else the English one."""
-    return ROOT / (f"{name}.{language}.md" if language != "en" and has_own(name, language) else f"{name}.md")
+    return ROOT / (f"{name}.md" if language == "en" else f"{name}.{language}.md")
 
 
 def without_blanks_in_chinese(text):
@@ -93,9 +81,7 @@ class Stage:
         out = [line.replace("```mermaid", "```text") if line.startswith("```") else line for line in text.splitlines()]
         for number, _ in check_links.prose(text):
             out[number - 1] = self.with_links(out[number - 1], file, name)
-        if has_own(name, self.language):
-            return without_blanks_in_chinese("\n".join(out)) + "\n"
-        return "\n".join([*out[:1], "", WORDS[self.language]["only"], *out[1:]]) + "\n"
+        return without_blanks_in_chinese("\n".join(out)) + "\n"
 
     def with_links(self, line, file, name):
         kept = check_links.without_code(line)
@@ -120,7 +106,7 @@ class Stage:
         page = page.removesuffix(".zh-CN")
         if there.suffix == ".md" and page in self.names:
             staged = "index" if page == "README" else page
-            if language == self.language or not has_own(page, self.language):
+            if language == self.language:
                 return f"[{words}]({up}{staged}.md{anchor})"
             return f'<a href="{up}../{language}/{staged}.html{urllib.parse.quote(anchor, safe="#%")}">{words}</a>'
         return f'<a href="{up}../{self.copied(there)}">{words}</a>'
@@ -157,16 +143,12 @@ class Stage:
             return f'<a href="{pathlib.PurePosixPath(self.copied(there)).name}">{there.name}</a>'
         return there.name
 
-    def entry(self, page):
-        """A page in the list of pages; one without Chinese has a Chinese name there all the same."""
-        return f"{ENGLISH_ONLY[page]}（英文） <{page}>" if self.language != "en" and page in ENGLISH_ONLY and not has_own(page, self.language) else page
-
     def index(self):
         """README, with the list of all pages."""
         self.names.update(("commands/index", "messages", "api/index"))
         out = [self.page("README")]
         for captions, names in PARTS:
-            listed = [self.entry(page) for name in names for page in pages([name]) or [name] if page in self.names]
+            listed = [page for name in names for page in pages([name]) or [name] if page in self.names]
             out.append("\n".join(["```{toctree}", ":hidden:", f":caption: {captions[self.language]}", "", *listed, "```", ""]))
         return "\n".join(out)
 
@@ -234,13 +216,6 @@ def message_page(stage, helps):
     stage.write("messages", "\n".join(out).replace("\n\n\n", "\n\n"))
 
 
-def api_link(stage):
-    """The interface of C++ is documented in English: the other language leads there."""
-    text = [f"# {WORDS[stage.language]['api']}\n", "头文件的说明为英文，按模块列出；每个模块只依赖列在它上面的模块。\n"]
-    text += [f'- <a href="../../en/api/{room}.html">mjarm/{room}</a>' for room in check_layers.ALLOWED]
-    stage.write("api/index", "\n".join(text) + "\n")
-
-
 class Links(html.parser.HTMLParser):
     """What a page of HTML links to, loads, and may be linked to at."""
 
@@ -287,10 +262,7 @@ def build(language, program, work, out):
     for name in pages():
         stage.write(name, stage.page(name))
     message_page(stage, command_pages(stage, program))
-    if language == "en":
-        cpp_api.write_pages(ROOT, stage.work / "api", list(check_layers.ALLOWED))
-    else:
-        api_link(stage)
+    cpp_api.write_pages(ROOT, stage.work / "api", list(check_layers.ALLOWED), language)
     environment = os.environ | {"MJARM_SITE_LANGUAGE": language, "PYTHONDONTWRITEBYTECODE": "1", "LC_ALL": "C.UTF-8"}
     code = subprocess.run([sys.executable, "-m", "sphinx", "-b", "html", "-W", "--keep-going", "-q", "-c", str(HERE), "-d", str(work / f"{language}.trees"),
                            str(stage.work), str(out / language)], env=environment).returncode

@@ -9,6 +9,7 @@ import build
 import check_layers
 import check_links
 import cpp_api
+from python_reference_test import exact
 
 HEADER = """#pragma once
 
@@ -56,12 +57,30 @@ class CppTest(unittest.TestCase):
     def test_a_header(self):
         page = cpp_api.header_section("mjarm/core/why.hpp", HEADER)
         self.assertEqual(re.findall(r"^### `(.*)`$", page, re.M), ["Why", "name", "twice", "Solver", "kPi"])
-        self.assertIn('The word: "far", a\\_b \\<x\\>.\n\n- `why` — the reason,\n    in short.\n\n- *returns* never empty.\n', page)
+        self.assertIn('The word: "far", a\\_b \\<x\\>.\n\n- `why` — the reason, in short.\n\n- *returns* never empty.\n', page)
         self.assertIn("inline T twice(T a);\nfloat twice(float a);\n", page)
         self.assertIn("inline constexpr double kPi = std::numbers::pi_v<double>(3);", page)
         for gone in ("secret_", "class Other", "A remark", "return a"):
             self.assertNotIn(gone, page)
         self.assertEqual(cpp_api.header_section("mjarm/core/none.hpp", "#pragma once\nnamespace mjarm {\nclass A;\n}\n"), "")
+
+    def test_a_header_in_chinese(self):
+        chinese = {"Why not.": "为何不行。", "too far": "太远", "the reason, in short.": "原因，简述。", "never empty.": "从不为空。"}
+        page = cpp_api.header_section("mjarm/core/why.hpp", HEADER, lambda text: chinese.get(text, text))
+        self.assertIn("为何不行。\n\n```cpp\nenum class Why {\n  far,   ///< 太远\n};\n```", page)
+        self.assertIn("- `why` — 原因，简述。\n\n- *返回* 从不为空。\n", page)
+        self.assertIn("/// 把数组\n/// 加倍。\nint a(\"//\");  // x", cpp_api.commented('/// Doubles\n/// it.\n///\n/// b\nint a("//");  // x', {
+            "Doubles it.": "把数组", "b": "加倍。", "x": "x"}.get))
+
+    def test_every_public_comment_is_there_in_chinese(self):
+        faults = [fault for room in check_layers.ALLOWED for fault in cpp_api.room_page(build.ROOT, room, "zh-CN")[1]]
+        self.assertEqual(faults, [], "docs/cpp/ROOM.zh-CN.txt")
+
+    def test_no_unit_shape_or_name_is_lost_in_chinese(self):
+        for room in check_layers.ALLOWED:
+            for (header, english), chinese in cpp_api.Chinese(build.ROOT, room).catalogue.chinese.items():
+                self.assertLessEqual(exact(english), exact(chinese), f"{room}: {header}")
+                self.assertNotRegex(chinese, r"[\u4e00-\u9fff][,;:.!?]|[,;:!?] ?[\u4e00-\u9fff]", f"{room}: {header}: punctuation")
 
     def test_nothing_of_a_public_header_is_lost(self):
         for room in check_layers.ALLOWED:
@@ -86,7 +105,6 @@ class PagesTest(unittest.TestCase):
         self.assertEqual(self.link("en", "docs/serve.md", "serve.zh-CN.md"), 'see <a href="../../zh-CN/docs/serve.html">it</a>.')
         self.assertEqual(self.link("zh-CN", "docs/serve.zh-CN.md", "serve.md"), 'see <a href="../../en/docs/serve.html">it</a>.')
         self.assertEqual(self.link("zh-CN", "docs/serve.zh-CN.md", "perception.zh-CN.md"), "see [it](../docs/perception.md).")
-        self.assertEqual(self.link("zh-CN", "docs/serve.zh-CN.md", "roadmap.md"), "see [it](../docs/roadmap.md).")  # there is no other
         self.assertEqual(self.link("en", "docs/serve.md", "../README.md"), "see [it](../index.md).")
 
     def test_links_to_files(self):
@@ -101,9 +119,12 @@ class PagesTest(unittest.TestCase):
         self.assertEqual(build.without_blanks_in_chinese("甲\n乙，\n丙\n\n丁\n`a`\n- 戊"), "甲乙，丙\n\n丁\n`a`\n- 戊")
         self.assertEqual(build.without_blanks_in_chinese("## 甲\n乙\n丙"), "## 甲\n乙丙")
 
-    def test_every_page_is_in_the_site(self):
-        found = {page.relative_to(build.ROOT).as_posix()[:-3] for page in check_links.pages_of(build.ROOT) if ".zh-CN." not in page.name}
-        self.assertEqual(sorted(found - {"README"}), sorted(build.pages()))
+    def test_every_page_is_in_the_site_in_both_languages(self):
+        found = {page.relative_to(build.ROOT).as_posix()[:-3] for page in check_links.pages_of(build.ROOT)}
+        chinese = {page.removesuffix(".zh-CN") for page in found if page.endswith(".zh-CN")}
+        english = {page for page in found if not page.endswith(".zh-CN")} - {"docs/roadmap"}  # that is for those who build mjarm
+        self.assertEqual(sorted(english - {"README"}), sorted(build.pages()))
+        self.assertEqual(english, chinese)
 
     def test_tables_of_benchmarks_are_the_same_in_both_languages(self):
         def tables(page):

@@ -50,11 +50,10 @@ class SearchInChinese(Search):
 
 
 def add_switch(app, page, template, context, tree):
-    """The same page in the other language; the pages of C++ are in English only."""
-    there = page if not page.startswith("api/") or other == "en" else "api/index"
+    """The same page in the other language."""
     context["other_name"] = {"en": "English", "zh-CN": "中文"}[other]
     context["other_lang"] = other
-    context["other_page"] = "../" * (page.count("/") + 1) + f"{other}/{there}.html"
+    context["other_page"] = "../" * (page.count("/") + 1) + f"{other}/{page}.html"
 
 
 def setup(app):

@@ -2,18 +2,55 @@
 
 import re
 
-TEXTS = {
-    "core": "values, errors, poses, files, words", "model": "MJCF and URDF to a robot; what is wrong with a file",
-    "kinematics": "where the tool is, and joint values for it", "collision": "spheres, exact distances, proofs of edges",
-    "path": "curves without time, and joints along them", "planning": "paths round obstacles, and their proof",
-    "trajectory": "motions in time within limits", "control": "from a reference to commands of actuators",
-    "identification": "payload, friction and links from a log",
-    "teleop": "leading an arm by velocities of its tool",
-    "sim": "MuJoCo steps, with a controller", "render": "pictures and films", "perception": "objects that a camera sees",
-    "execution": "motions run and measured", "program": "motion programs", "episode": "recorded demonstrations",
-    "view": "the window", "serve": "the page in a browser",
-    "rl": "learning to reach", "clone": "policies from demonstrations", "install": "real meshes", "session": "what every face of the program shares",
+import catalogue
+
+TEXTS = {  # of each room, in English and in Chinese
+    "core": ("values, errors, poses, files, words", "数值、错误、位姿、文件与文字"),
+    "model": ("MJCF and URDF to a robot; what is wrong with a file", "由 MJCF 与 URDF 得到机器人；文件有什么毛病"),
+    "kinematics": ("where the tool is, and joint values for it", "工具在哪里，以及到达它的关节值"),
+    "collision": ("spheres, exact distances, proofs of edges", "球近似、精确距离、路段的证明"),
+    "path": ("curves without time, and joints along them", "不含时间的曲线，以及沿曲线的关节值"),
+    "planning": ("paths round obstacles, and their proof", "绕开障碍的路径及其证明"),
+    "trajectory": ("motions in time within limits", "满足限值的时间轨迹"),
+    "control": ("from a reference to commands of actuators", "由参考轨迹到执行器指令"),
+    "identification": ("payload, friction and links from a log", "由记录辨识负载、摩擦与连杆参数"),
+    "teleop": ("leading an arm by velocities of its tool", "用工具速度牵引机械臂"),
+    "sim": ("MuJoCo steps, with a controller", "带控制器的 MuJoCo 步进"),
+    "render": ("pictures and films", "图片与影片"),
+    "perception": ("objects that a camera sees", "相机看到的物体"),
+    "execution": ("motions run and measured", "运动的执行与测量"),
+    "program": ("motion programs", "运动程序"),
+    "episode": ("recorded demonstrations", "录制的示教数据"),
+    "view": ("the window", "窗口"),
+    "serve": ("the page in a browser", "浏览器页面"),
+    "rl": ("learning to reach", "学习到达"),
+    "clone": ("policies from demonstrations", "由示教数据得到策略"),
+    "install": ("real meshes", "真实网格"),
+    "session": ("what every face of the program shares", "程序各界面共用的部分"),
 }
+WORDS = {
+    "en": {"title": "C++ interface", "room": "room", "what": "what is in it", "returns": "returns", "stop": ".",
+           "order": "By room, in the order in which data flows: a room knows those above it alone. All is in the namespace `mjarm`; units are SI."},
+    "zh-CN": {"title": "C++ 接口", "room": "模块", "what": "内容", "returns": "返回", "stop": "。",
+              "order": "按模块列出，顺序即数据的流向：每个模块只依赖列在它上面的模块。全部在命名空间 `mjarm` 里；单位为国际单位制。"},
+}
+COMMENT = re.compile(r'((?:"(?:\\.|[^"\\])*"|[^"/]|/(?!/))*?)(//[/!]?<?)(.*)')
+
+
+class Chinese:
+    """What the comments of a room say in Chinese, from docs/cpp/ROOM.zh-CN.txt: a section a header, a paragraph a piece."""
+
+    def __init__(self, root, room):
+        file = root / "docs" / "cpp" / f"{room}.zh-CN.txt"
+        self.catalogue = catalogue.Catalogue(file.read_text(encoding="utf-8") if file.exists() else "", file.relative_to(root).as_posix())
+
+    def of(self, header):
+        """What says a paragraph of that header; one without words, as a unit or a shape, stays as it is."""
+        return lambda text: self.catalogue.piece(header, text) if has_words(text) else text
+
+
+def has_words(text):
+    return re.search("[A-Za-z]{2}", re.sub(r"`[^`]*`|\[[^\]]*\]|\([^()]*,[^()]*\)", "", text)) is not None
 
 
 def public_headers(root, room):
@@ -28,13 +65,14 @@ def without_literals(line):
 
 
 def items(text):
-    """(comment, declaration) of all that a header declares within its namespaces, in order; the comment may be empty."""
-    comment, code, depth, found, wants_comment = [], [], 0, [], True
+    """(comment, declaration) of all that a header declares within its namespaces, in order; one of both may be empty."""
+    comment, code, depth, found = [], [], 0, []
     for line in text.splitlines():
         bare = line.strip()
         if not code and (not bare or bare.startswith("#") or re.match(r"(inline )?namespace\b.*\{$", bare) or re.match(r"\}\s*(//.*)?$", bare)):
-            if not bare and comment and comment[0].startswith("// "):
-                comment = []  # a remark between declarations
+            if comment and (not bare or "namespace" in bare):  # of no declaration: a remark, or what holds for all that follow
+                found += [] if comment[0].startswith("// ") else [(comment, [])]
+                comment = []
             continue
         if not code and bare.startswith("//"):
             comment.append(bare)
@@ -55,33 +93,74 @@ def begins_type(code):
     return bool(re.match(r"(template\s*<.*>\s*)?(class|struct|enum|union)\b", code.lstrip()))
 
 
-def declaration(code):
+def declaration(code, say=None):
     """Without bodies of functions and without what is private."""
     text = "\n".join(code)
     if begins_type(text):
         text = re.sub(r"\n private:.*?(?=\n(?: public:|\};))", "", text, flags=re.S).replace("\n\n};", "\n};")
     else:
         text = re.sub(r"\)([^{};]*?)\s*\{.*\}\s*$", r")\1;", text, flags=re.S) if "(" in text.split("{")[0] and "{" in text else text
-    return text
+    return commented(text, say) if say else text
 
 
-def prose(comment):
+def commented(text, say):
+    """A declaration with its comments as `say` has them, a line a paragraph."""
+    out, run = [], None  # run: what stands before the comment, its mark, its lines
+    for line in [*text.splitlines(), ""]:
+        found = COMMENT.fullmatch(line)
+        before, mark, words = found.groups() if found else (line, "", "")
+        if run and found and mark == run[1] and not before.strip():
+            run[2].append(words)
+            continue
+        if run:
+            said = [" ".join(filter(None, ("  " if kind == "code" else kind, say(piece)))) for kind, piece in pieces(run[2])]
+            at_end = bool(run[0].strip())
+            out += [f"{run[0]}{run[1]} {one}" for one in ([" ".join(said)] if at_end else said)]
+        run = (before, mark, [words]) if found else None
+        if not found:
+            out.append(line)
+    return "\n".join(out[:-1])
+
+
+def pieces(lines):
+    """(mark, text) of each paragraph of a comment without its slashes; the mark is empty, "-", "|" (a row of a table), "code", "@param NAMES" or
+    "@return"."""
+    found = [None]
+    for line in lines:
+        for text in re.split(r"(?<=\s)(?=@(?:t?param|returns?)\b)", line):
+            mark = re.match(r"\s*(@t?param(?:\[\w+\])?\s+\w+(?:,\s?\w+)*|@returns?|@file|-(?=\s)|\|)\s*(.*)$", text)
+            if re.match(r" {3,}\S", text) and (not found[-1] or found[-1][0] in ("", "code")):
+                found.append(["code", text.strip()])
+            elif mark and not text.startswith("  "):
+                found.append([mark[1], mark[2].strip()])
+            elif not text.strip() or not found[-1] or found[-1][0] in ("code", "|"):
+                found.append(["", text.strip()] if text.strip() else None)
+            else:
+                found[-1][1] += " " + text.strip()
+    return [(mark, text.strip()) for mark, text in filter(None, found) if text and not text.startswith("NOLINT")]
+
+
+def prose(comment, say, language):
     """What a comment says, in markdown."""
-    out = []
-    # What is no code in markdown must not become some: names with underscores, brackets and stars.
-    escaped = re.sub(r"(`[^`]*`)|([<>*_\[\]$#|])", lambda one: one.group(1) or "\\" + one.group(2),
-                     "\n".join(re.sub(r"^///?<?\s?", "", line) for line in comment))
-    for text in escaped.splitlines():
-        named = re.match(r"@(param|tparam)(?:\[\w+\])?\s+(\S+)\s*(.*)", text)
-        back = re.match(r"@(?:return|returns)\s*(.*)", text)
-        if named:
-            out += ["", "- `{}` — {}".format(named.group(2).replace("\\", ""), named.group(3))]
-        elif back:
-            out += ["", f"- *returns* {back.group(1)}"]
+    out, before = [], None
+    for mark, text in pieces(re.sub(r"^///?<?", "", line) for line in comment):
+        if mark == "code":
+            text = re.sub(r"(?<=// )(.*)", lambda words: say(words[1]), text) if say else text
+            out += [f"    {text}"] if before == mark else ["", f"    {text}"]
+        elif mark == "|":
+            out += [*([""] if before != mark else []), f"| {say(text) if say else text}"]
         else:
-            goes_on = any(line.startswith(("- `", "- *returns*")) for line in out) and not text.startswith("- ")
-            out.append(("  " if goes_on and text else "") + text)
-    return "\n".join(out)
+            # What is no code in markdown must not become some: names with underscores, brackets and stars.
+            said = re.sub(r"(`[^`]*`)|([<>*_\[\]$#|])", lambda one: one.group(1) or "\\" + one.group(2), say(text) if say else text)
+            if mark.startswith("@return"):
+                said = f"- *{WORDS[language]['returns']}* {said}"
+            elif mark.startswith(("@param", "@tparam")):
+                said = f"- `{mark.split(maxsplit=1)[1]}` — {said}"
+            elif mark == "-":
+                said = f"- {said}"
+            out += ["", said]
+        before = mark
+    return "\n".join(out[1:])
 
 
 def name_of(code):
@@ -108,35 +187,45 @@ def without_template(text):
     return text
 
 
-def header_section(path, text):
+def header_section(path, text, say=None):
     """One header: what each declaration is for, and how it is written. Overloads with one comment stay together."""
     out, shown, groups = [f"## {path.removeprefix('mjarm/')}\n", f"```cpp\n#include <{path}>\n```\n"], "", []
     for comment, code in items(text):
-        if comment or not groups or begins_type("\n".join(code)) or begins_type("\n".join(groups[-1][1][0])):
+        if not code:
+            groups.append((comment, []))
+        elif comment or not groups or not groups[-1][1] or begins_type("\n".join(code)) or begins_type("\n".join(groups[-1][1][0])):
             groups.append((comment, [code]))
         else:
             groups[-1][1].append(code)
     for comment, codes in groups:
-        name = name_of(codes[0])
+        name = name_of(codes[0]) if codes else shown
         if name != shown:
             out.append(f"### `{name}`\n")
         shown = name
         if comment:
-            out.append(prose(comment) + "\n")
-        out.append("```cpp\n" + "\n".join(declaration(code) for code in codes) + "\n```\n")
-    return "\n".join(out) if groups else ""
+            out.append(prose(comment, say, "zh-CN" if say else "en") + "\n")
+        if codes:
+            out.append("```cpp\n" + "\n".join(declaration(code, say) for code in codes) + "\n```\n")
+    return "\n".join(out) if any(codes for _, codes in groups) else ""
 
 
-def write_pages(root, folder, rooms):
-    """A page a room, with a section a header."""
-    lines = ["# C++ interface\n", "By room, in the order in which data flows: a room knows those above it alone. "
-             "All is in the namespace `mjarm`; units are SI.\n", "| room | what is in it |", "|---|---|"]
-    lines += [f"| [{room}]({room}.md) | {TEXTS[room]} |" for room in rooms]
+def room_page(root, room, language):
+    """(page, faults): a section a header; a fault is a comment without Chinese, or Chinese of none."""
+    text = TEXTS[room][language != "en"]
+    out = [f"# mjarm/{room}\n", text[0].upper() + text[1:] + WORDS[language]["stop"] + "\n"]
+    chinese = Chinese(root, room) if language != "en" else None
+    for file in public_headers(root, room):
+        out.append(header_section(file.relative_to(root).as_posix(), file.read_text(encoding="utf-8"), chinese and chinese.of(file.name)))
+    return "\n".join(out), chinese.catalogue.all_faults() if chinese else []
+
+
+def write_pages(root, folder, rooms, language):
+    """A page a room."""
+    words = WORDS[language]
+    lines = [f"# {words['title']}\n", f"{words['order']}\n", f"| {words['room']} | {words['what']} |", "|---|---|"]
+    lines += [f"| [{room}]({room}.md) | {TEXTS[room][language != 'en']} |" for room in rooms]
     lines += ["\n```{toctree}\n:hidden:\n", *rooms, "```\n"]
     folder.mkdir(parents=True)
     (folder / "index.md").write_text("\n".join(lines), encoding="utf-8")
     for room in rooms:
-        out = [f"# mjarm/{room}\n", TEXTS[room][0].upper() + TEXTS[room][1:] + ".\n"]
-        for file in public_headers(root, room):
-            out.append(header_section(file.relative_to(root).as_posix(), file.read_text(encoding="utf-8")))
-        (folder / f"{room}.md").write_text("\n".join(out), encoding="utf-8")
+        (folder / f"{room}.md").write_text(room_page(root, room, language)[0], encoding="utf-8")
