@@ -273,6 +273,30 @@ TEST(IkSolver, OptionsOutOfRangeAreNamedAtOnce) {
   EXPECT_TRUE(made->solve(fk(arm, as_span(q)), as_span(q)).has_value());
 }
 
+TEST(IkSolver, WithOtherOptionsIsAsIfMadeWithThem) {
+  Rng rng(41);
+  for (const Arm& arm : {ur5e(), panda(), random_arm(6, rng)}) {
+    const IkSolver ik(arm);
+    const IkOptions others[] = {{.max_step = 0.5},
+                                {.task = IkTask::position},
+                                {.closed_form = false},
+                                {.valid = [](std::span<const double> q) { return q[0] > 0; }}};
+    for (const IkOptions& options : others) {
+      const IkSolver made(arm, options), changed = ik.with(options);
+      EXPECT_EQ(changed.six_axis().has_value(), made.six_axis().has_value());
+      EXPECT_EQ(changed.reach().outer(), made.reach().outer());
+      for (int i = 0; i < 20; ++i) {
+        const Pose X_WT = fk(arm, as_span(random_q(arm, rng)));
+        const JointVec seed = random_q(arm, rng);
+        const auto answer = changed.solve(X_WT, as_span(seed));
+        const auto expected = made.solve(X_WT, as_span(seed));
+        ASSERT_EQ(answer.has_value(), expected.has_value());
+        if (answer) EXPECT_EQ(answer->q, expected->q);
+      }
+    }
+  }
+}
+
 TEST(IkFailure, RefusedEverywhereIsCollision) {
   const Arm arm = ur5e();
   IkOptions options;
