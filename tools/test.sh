@@ -89,9 +89,16 @@ run_ctest() {
 }
 
 # Adds what a JUnit file holds to the counts, and says what failed or was skipped.
-count_results() {
-  local counts
-  counts=$(python3 "$root/tools/test_summary.py" "$1")
+count_results() { count_lines "results" python3 "$root/tools/test_summary.py" "$1"; }
+
+# count_lines NAME COMMAND...: prints what it prints, but for the last line, "PASSED FAILED SKIPPED", which adds to the counts.
+count_lines() {
+  local name=$1 counts
+  shift
+  counts=$("$@") || {
+    check "$name" false
+    return
+  }
   sed '$d' <<<"$counts"
   read -r p f s <<<"$(tail -n 1 <<<"$counts")"
   passed=$((passed + p)) failed=$((failed + f)) skipped=$((skipped + s))
@@ -221,23 +228,24 @@ run_arms() {
     check "arms" env MJARM_ARMS_DATA="$deps/arms/robots" \
       "$root/build/dev/bin/whole_test" --gtest_filter='*TwelveArms*'
   fi
+  ((failed || $#)) || run_ssik_arms
   ((failed)) || run_menagerie "$@"
   finish
 }
 
+# The arms that a peer ships; adds to the counts.
+run_ssik_arms() {
+  local python=$root/.venv/bin/python
+  "$python" -c 'import ssik' 2>/dev/null || { skipped=$((skipped + 1)) && echo "SKIPPED: arms of ssik: ./dev peers installs it"; return; }
+  say "check: arms of ssik ..."
+  count_lines "arms of ssik" "$python" -B "$root/tools/ssik_arms.py" --program "$root/build/dev/bin/mjarm"
+}
+
 # run_menagerie [ROBOT...]: every serial arm of Menagerie, or those; adds to the counts.
 run_menagerie() {
-  local counts
   say "check: arms of Menagerie ..."
-  counts=$(MENAGERIE_CACHE_DIR=${MENAGERIE_CACHE_DIR:-$deps/arms/menagerie} \
-    python3 -B "$root/tools/menagerie_arms.py" --program "$root/build/dev/bin/mjarm" \
-    --package "$deps/arms/robots/menagerie" "$@") || {
-    check "arms of Menagerie" false
-    return
-  }
-  sed '$d' <<<"$counts"
-  read -r p f s <<<"$(tail -n 1 <<<"$counts")"
-  passed=$((passed + p)) failed=$((failed + f)) skipped=$((skipped + s))
+  MENAGERIE_CACHE_DIR=${MENAGERIE_CACHE_DIR:-$deps/arms/menagerie} count_lines "arms of Menagerie" \
+    python3 -B "$root/tools/menagerie_arms.py" --program "$root/build/dev/bin/mjarm" --package "$deps/arms/robots/menagerie" "$@"
 }
 
 run_benches() {
