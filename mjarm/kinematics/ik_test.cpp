@@ -291,7 +291,9 @@ TEST(IkSolver, WithOtherOptionsIsAsIfMadeWithThem) {
         const auto answer = changed.solve(X_WT, as_span(seed));
         const auto expected = made.solve(X_WT, as_span(seed));
         ASSERT_EQ(answer.has_value(), expected.has_value());
-        if (answer) EXPECT_EQ(answer->q, expected->q);
+        if (answer) {
+          EXPECT_EQ(answer->q, expected->q);
+        }
       }
     }
   }
