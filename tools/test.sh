@@ -127,6 +127,19 @@ run_page_tests() {
   esac
 }
 
+# run_page_and_pytest PRESET: beside each other, as each of them waits most of the time.
+run_page_and_pytest() {
+  local page said=$root/build/$1/page.txt
+  (
+    passed=0 failed=0 skipped=0
+    run_page_tests "$1"
+    echo "$passed $failed $skipped"
+  ) >"$said" &
+  page=$!
+  run_pytest "$1"
+  if wait "$page"; then count_lines "page in a browser" cat "$said"; else check "page in a browser" false; fi
+}
+
 run_wheel() {
   local results=$root/build/wheel/pytest.xml
   rm -rf "$root/dist"
@@ -167,8 +180,7 @@ run_tests() {
     check "headers stand alone" check_headers "$1"
     check "kinematics of the page" check_ik_module "$1"
     run_ctest "$1"
-    run_page_tests "$1"
-    run_pytest "$1"
+    run_page_and_pytest "$1"
   fi
   finish
 }
