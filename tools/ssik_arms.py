@@ -70,7 +70,7 @@ def main():
         files = []
         for arm in ssik.list_arms():
             files.append(pathlib.Path(folder, f"{arm.vendor}_{arm.name}.urdf"))
-            files[-1].write_text(urdf(arm.name, importlib.import_module(arm.import_path)._KB.joints), encoding="utf-8")
+            files[-1].write_text(urdf(arm.name, ssik.Manipulator.from_prebuilt(arm.name).kinbody.joints), encoding="utf-8")
         said = list(pool.map(lambda file: refused(options.program, file), files))
     print("".join(said), end="")
     print(sum(not one for one in said), sum(bool(one) for one in said), 0)

@@ -8,7 +8,6 @@ import xml.etree.ElementTree
 import ssik_arms
 
 TURN_Y = [[0, 0, 1, 0.5], [0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 0, 1]]  # by a quarter about y, half a meter on
-SAME = [[float(i == j) for j in range(4)] for i in range(4)]
 
 
 def turned(roll, pitch, yaw):

@@ -117,10 +117,8 @@ void keep_best(Layer& layer, std::size_t max) {
   if (layer.size() < 2) return;
   std::vector<std::size_t> order(layer.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    if (layer[a].rank < layer[b].rank) return true;
-    return !(layer[b].rank < layer[a].rank) && a < b;
-  });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return layer[a].rank < layer[b].rank; });
   if (order.size() > max) order.resize(max);
   Layer sorted;
   sorted.reserve(order.size());
@@ -132,7 +130,9 @@ void keep_best(Layer& layer, std::size_t max) {
 
 IkSolver without_limits(const IkSolver& ik) {
   Arm arm = ik.arm();
-  if ((arm.limits.upper - arm.limits.lower).minCoeff() == kInfinity) return ik;
+  if (arm.limits.lower.maxCoeff() == -kInfinity && arm.limits.upper.minCoeff() == kInfinity) {
+    return ik;
+  }
   arm.limits.lower.setConstant(-kInfinity);
   arm.limits.upper.setConstant(kInfinity);
   return IkSolver(arm, ik.options());

@@ -8,7 +8,7 @@ namespace mjarm::detail {
 namespace {
 
 constexpr std::size_t kSegment = 512;  // layers that are kept at a time
-constexpr std::size_t kKnown = 4096;   // poses of which branches are kept
+constexpr std::size_t kKnown = 1024;   // poses of which branches are kept: 20 MB at most
 
 /// The branches of the first poses, for all tracks that are looked at.
 using KnownBranches = std::vector<std::vector<PathLayers::Branch>>;

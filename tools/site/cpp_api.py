@@ -140,20 +140,21 @@ def pieces(lines):
     return [(mark, text.strip()) for mark, text in filter(None, found) if text and not text.startswith("NOLINT")]
 
 
-def prose(comment, say, language):
+def prose(comment, say=None):
     """What a comment says, in markdown."""
-    out, before = [], None
+    out, before, returns = [], None, WORDS["zh-CN" if say else "en"]["returns"]
+    say = say or (lambda text: text)
     for mark, text in pieces(re.sub(r"^///?<?", "", line) for line in comment):
         if mark == "code":
-            text = re.sub(r"(?<=// )(.*)", lambda words: say(words[1]), text) if say else text
+            text = re.sub(r"(?<=// )(.*)", lambda words: say(words[1]), text)
             out += [f"    {text}"] if before == mark else ["", f"    {text}"]
         elif mark == "|":
-            out += [*([""] if before != mark else []), f"| {say(text) if say else text}"]
+            out += [*([""] if before != mark else []), f"| {say(text)}"]
         else:
             # What is no code in markdown must not become some: names with underscores, brackets and stars.
-            said = re.sub(r"(`[^`]*`)|([<>*_\[\]$#|])", lambda one: one.group(1) or "\\" + one.group(2), say(text) if say else text)
+            said = re.sub(r"(`[^`]*`)|([<>*_\[\]$#|])", lambda one: one.group(1) or "\\" + one.group(2), say(text))
             if mark.startswith("@return"):
-                said = f"- *{WORDS[language]['returns']}* {said}"
+                said = f"- *{returns}* {said}"
             elif mark.startswith(("@param", "@tparam")):
                 said = f"- `{mark.split(maxsplit=1)[1]}` — {said}"
             elif mark == "-":
@@ -203,7 +204,7 @@ def header_section(path, text, say=None):
             out.append(f"### `{name}`\n")
         shown = name
         if comment:
-            out.append(prose(comment, say, "zh-CN" if say else "en") + "\n")
+            out.append(prose(comment, say) + "\n")
         if codes:
             out.append("```cpp\n" + "\n".join(declaration(code, say) for code in codes) + "\n```\n")
     return "\n".join(out) if any(codes for _, codes in groups) else ""
