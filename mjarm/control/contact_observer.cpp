@@ -17,10 +17,9 @@ constexpr double kForgets = 0.02;      // of a link error, in its standard devia
 constexpr double kSolverStep = 1e-7;   // [rad or m] what a simulation rounds where encoders do not
 constexpr double kMostTorque = 1;      // of the largest torque: prior deviation of a contact's
 constexpr double kLeft = 12, kLeftShare = 0.01;  // squared deviations that are left over by chance
-// A joint whose direction nobody knows: its friction may have any size within kTurns times its own
-// in each step (it is the same over many), and what that did is forgotten after kForget steps.
-constexpr double kTurns = 4;
-constexpr int kForget = 12;
+// Friction of a joint whose direction nobody knows: its deviation, in the joint's own when it moves
+// (more than one, as it may turn in a step), and what is left of it after a step.
+constexpr double kStanding = 2.5, kKept = 0.75;
 constexpr std::size_t kShortLook = 5, kLongLook = 20;  // [steps] in which a joint has moved
 
 /// F X, F = [1 h hG; 0 1 G; 0 0 1]: how positions, velocities and unknowns go on. G is (dof,
@@ -42,36 +41,30 @@ void add_torque_noise(Eigen::MatrixXd& P, const Eigen::MatrixXd& inverse_mass,
   P.block(n, n, n, n) += Q;
 }
 
-/// Evidence of an onset with its joints in another order: L L^T = information + 1 / prior,
-/// L y = evidence. The first joints of that order explain |y of those|^2 by themselves.
+/// Evidence of an onset: L L^T = information + 1 / prior, L y = evidence. The first joints explain
+/// |y of those|^2 by themselves.
 struct Factor {
   Eigen::MatrixXd L;
   Eigen::VectorXd y;
 
-  Factor(const Eigen::MatrixXd& information, const Eigen::VectorXd& evidence,
-         const std::vector<int>& order, const JointVec& prior)
+  Factor(const Eigen::MatrixXd& information, const Eigen::VectorXd& evidence, const JointVec& prior)
       : L(Eigen::MatrixXd::Zero(evidence.size(), evidence.size())), y(evidence.size()) {
-    const Eigen::Index n = y.size();
-    for (Eigen::Index r = 0; r < n; ++r) {
-      const int i = order[static_cast<std::size_t>(r)];
-      for (Eigen::Index c = 0; c < r; ++c) {
-        const int j = order[static_cast<std::size_t>(c)];
-        L(r, c) = (information(i, j) - L.row(r).head(c).dot(L.row(c).head(c))) / L(c, c);
+    for (Eigen::Index i = 0; i < y.size(); ++i) {
+      for (Eigen::Index j = 0; j < i; ++j) {
+        L(i, j) = (information(i, j) - L.row(i).head(j).dot(L.row(j).head(j))) / L(j, j);
       }
-      L(r, r) = std::sqrt(information(i, i) + prior[i] - L.row(r).head(r).squaredNorm());
-      y[r] = (evidence[i] - L.row(r).head(r).dot(y.head(r))) / L(r, r);
+      L(i, i) = std::sqrt(information(i, i) + prior[i] - L.row(i).head(i).squaredNorm());
+      y[i] = (evidence[i] - L.row(i).head(i).dot(y.head(i))) / L(i, i);
     }
   }
 
-  /// The torques of the first `count` joints that explain most, in the arm's order.
-  [[nodiscard]] JointVec torque(const std::vector<int>& order, int count) const {
+  /// The torques of the first `count` joints that explain most.
+  [[nodiscard]] JointVec torque(int count) const {
     JointVec out = JointVec::Zero(y.size());
-    Eigen::VectorXd t = Eigen::VectorXd::Zero(count);
-    for (int r = count - 1; r >= 0; --r) {
-      double sum = y[r];
-      for (int c = r + 1; c < count; ++c) sum -= L(c, r) * t[c];
-      t[r] = sum / L(r, r);
-      out[order[static_cast<std::size_t>(r)]] = t[r];
+    for (int i = count - 1; i >= 0; --i) {
+      double sum = y[i];
+      for (int j = i + 1; j < count; ++j) sum -= L(j, i) * out[j];
+      out[i] = sum / L(i, i);
     }
     return out;
   }
@@ -103,8 +96,22 @@ ContactObserver::ContactObserver(const Model& model, const Arm& arm, const Conta
       errors_(model, arm, options.errors),
       h_(model.timestep()),
       joints_(arm.dof()),
-      unknown_(errors_.count() + 2 * arm.dof()),
+      unknown_(errors_.count() + 3 * arm.dof()),
       prior_((kMostTorque * arm.limits.torque).cwiseAbs2().cwiseInverse()) {}
+
+/// [N m or N] One standard deviation above what is known.
+JointVec ContactObserver::most_friction() const {
+  return x_.segment(friction(0), joints_) +
+         P_.diagonal().segment(friction(0), joints_).cwiseMax(0).cwiseSqrt();
+}
+
+/// The unknown number `to` is `factor` times the number `from` now.
+void ContactObserver::replace(Eigen::Index to, Eigen::Index from, double factor) {
+  x_[to] = factor * x_[from];
+  P_.row(to) = factor * P_.row(from);
+  P_.col(to) = factor * P_.col(from);
+  traces_.row(to) = factor * traces_.row(from);
+}
 
 void ContactObserver::begin(const JointVec& q) {
   const Eigen::Index n = joints_, all = 2 * n + unknown_;
@@ -113,20 +120,21 @@ void ContactObserver::begin(const JointVec& q) {
     x_ = Eigen::VectorXd::Zero(all);
     P_ = Eigen::MatrixXd::Zero(all, all);
     P_.diagonal().segment(2 * n, errors_.count()).setOnes();
-    for (int i = 0; i < joints_; ++i) {
-      const double half = 0.5 * options_.errors.friction * arm_.limits.torque[i];
-      x_[first(i)] = half;
-      P_(first(i), first(i)) = half * half + 1e-12;
-      const double drift = kDrift * arm_.limits.torque[i];
-      P_(first(i) + n, first(i) + n) = drift * drift;
-    }
+    const JointVec half = 0.5 * options_.errors.friction * arm_.limits.torque;
+    x_.segment(friction(0), n) = half;
+    P_.diagonal().segment(friction(0), n) = half.cwiseAbs2().array() + 1e-12;
+    P_.diagonal().segment(drift(0), n) = (kDrift * arm_.limits.torque).cwiseAbs2();
   }
   x_.head(n) = q;
   x_.segment(n, n).setZero();
+  x_.tail(n).setZero();
   P_.topRows(2 * n).setZero();
   P_.leftCols(2 * n).setZero();
+  P_.bottomRows(n).setZero();
+  P_.rightCols(n).setZero();
   P_.diagonal().head(n).setConstant(step * step);
   P_.diagonal().segment(n, n).setConstant(0.01);
+  P_.diagonal().tail(n) = most_friction().cwiseAbs2();
   s_ = JointVec::Zero(n);
   w_ = s_;
   told_.clear();
@@ -134,7 +142,6 @@ void ContactObserver::begin(const JointVec& q) {
   traces_ = Eigen::MatrixXd::Zero(all, n * kWindow);
   onsets_.assign(kWindow, {Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)});
   newest_ = filled_ = 0;
-  settled_.assign(static_cast<std::size_t>(n), 0);
   runs_ = true;
 }
 
@@ -175,6 +182,7 @@ void ContactObserver::predict(const JointVec& torque) {
 
   Eigen::MatrixXd A(n, unknown_);
   A.middleCols(errors_.count(), n) = (-s_).asDiagonal();
+  A.middleCols(errors_.count() + n, n).setIdentity();
   A.rightCols(n).setIdentity();
   // What link errors do depends on the acceleration, and that on what they do: with the one of the
   // step before alone they would be late wherever it changes.
@@ -191,19 +199,17 @@ void ContactObserver::predict(const JointVec& torque) {
   carry(P_, G, h_);
   P_ = 0.5 * (P_ + P_.transpose().eval());  // rounding must not grow
   P_.diagonal().segment(2 * n, errors_.count()).array() += kForgets * kForgets * h_;
-  Eigen::VectorXd noise(n);
-  for (int i = 0; i < joints_; ++i) {
-    const double f = x_[first(i)] + std::sqrt(std::max(0.0, P_(first(i), first(i))));
-    const double drive = options_.torque_noise * torque[i];
-    const double turns = s_[i] == 0 ? kTurns * f : 0;
-    noise[i] = drive * drive + turns * turns;
-    const double drift = kDrift * arm_.limits.torque[i], rubs = kRubs * arm_.limits.torque[i];
-    P_(first(i) + n, first(i) + n) += drift * drift * h_;
-    P_(first(i), first(i)) += rubs * rubs * h_;
-  }
-  add_torque_noise(P_, inv, noise, h_);
-
   carry(traces_, G, h_);
+  P_.diagonal().segment(friction(0), n) += h_ * (kRubs * arm_.limits.torque).cwiseAbs2();
+  P_.diagonal().segment(drift(0), n) += h_ * (kDrift * arm_.limits.torque).cwiseAbs2();
+  const JointVec rubs = kStanding * most_friction();
+  for (int i = 0; i < joints_; ++i) {
+    if (s_[i] != 0) continue;
+    replace(standing(i), standing(i), kKept);
+    P_(standing(i), standing(i)) += (1 - kKept * kKept) * rubs[i] * rubs[i];
+  }
+  add_torque_noise(P_, inv, (options_.torque_noise * torque).cwiseAbs2(), h_);
+
   newest_ = (newest_ + 1) % kWindow;
   filled_ = std::min(filled_ + 1, kWindow);
   traces_.middleCols(newest_ * n, n).setZero();
@@ -246,34 +252,22 @@ void ContactObserver::find_moving(const JointVec& q) {
   if (seen_.size() > kLongLook + 1) seen_.pop_front();
   const double step = std::max(options_.encoder_step, kSolverStep);
   const JointVec& before = seen_[seen_.size() > kShortLook ? seen_.size() - 1 - kShortLook : 0];
-  for (Eigen::Index i = 0; i < n; ++i) {
+  for (int i = 0; i < joints_; ++i) {
     const double v = x_[n + i], sign = v < 0 ? -1 : 1;
     const double spread = 4 * std::sqrt(std::max(0.0, P_(n + i, n + i)));
     if (s_[i] != 0) {
       const double slow = std::max({std::min(spread, 0.05), 2 * h_ * std::abs(w_[i]), 2e-3});
-      if (std::abs(v) < slow || s_[i] != sign) s_[i] = 0;
+      if (std::abs(v) >= slow && s_[i] == sign) continue;
+      replace(standing(i), friction(i), -s_[i]);
+      s_[i] = 0;
     } else {
       const bool moved =
           (q[i] - before[i]) * sign > 2.5 * step || (q[i] - seen_.front()[i]) * sign > 3.5 * step;
-      if (moved && (q[i] - before[i]) * sign > 0.5 * step && std::abs(v) > 4e-3) s_[i] = sign;
+      if (!moved || (q[i] - before[i]) * sign <= 0.5 * step || std::abs(v) <= 4e-3) continue;
+      replace(standing(i), friction(i), 0);
+      s_[i] = sign;
     }
-    int& settled = settled_[static_cast<std::size_t>(i)];
-    settled = s_[i] == 0 ? 0 : settled + 1;
   }
-}
-
-ContactObserver::Ordered ContactObserver::order(int age) const {
-  Ordered out;
-  const auto doubtful = [&](int i) {
-    return settled_[static_cast<std::size_t>(i)] <= age + 1 + kForget;
-  };
-  for (const bool first : {true, false}) {
-    for (int i = 0; i < joints_; ++i) {
-      if (doubtful(i) == first) out.joints.push_back(i);
-    }
-    if (first) out.doubtful = static_cast<int>(out.joints.size());
-  }
-  return out;
 }
 
 std::optional<NoticedContact> ContactObserver::weigh() {
@@ -282,20 +276,19 @@ std::optional<NoticedContact> ContactObserver::weigh() {
   for (int age = 1; age < filled_; ++age) {
     const int k = (newest_ - age + kWindow) % kWindow;
     const Onset& onset = onsets_[static_cast<std::size_t>(k)];
-    const Ordered ordered = order(age);
-    const Factor factor(onset.information, onset.evidence, ordered.joints, prior_);
-    const double surprise = factor.y.tail(joints_ - ordered.doubtful).squaredNorm();
+    const Factor factor(onset.information, onset.evidence, prior_);
+    const double surprise = factor.y.squaredNorm();
     if (surprise <= surprise_) continue;
     surprise_ = surprise;
     if (surprise < options_.surprise) continue;
-    int last = ordered.doubtful;
-    for (double left = surprise - factor.y[last] * factor.y[last];
+    int last = 0;
+    for (double left = surprise - factor.y[0] * factor.y[0];
          left > std::max(kLeft, kLeftShare * surprise);) {
       ++last;
       left -= factor.y[last] * factor.y[last];
     }
-    out = {.joint = ordered.joints[static_cast<std::size_t>(last)],
-           .torque = factor.torque(ordered.joints, last + 1),
+    out = {.joint = last,
+           .torque = factor.torque(last + 1),
            .since = (age + 1) * h_,
            .surprise = surprise};
   }

@@ -25,7 +25,7 @@ struct ContactOptions {
   ModelErrors errors = {};
   /// A contact is told where its torques are so unlikely: the squared distance, in standard
   /// deviations, of what they do to the motion from what noise and errors explain. > 0
-  double surprise = 81;
+  double surprise = 64;
 };
 
 /// A contact, as joints tell it.
@@ -40,12 +40,12 @@ struct NoticedContact {
 /// generalised momentum of the arm changes by what drives it and what the model explains (A. De
 /// Luca, R. Mattone, ICRA 2005, p. 999); a Kalman filter estimates it from positions, together with
 /// all that the model does not know: masses and centres of mass (LinkErrors), dry friction, a slow
-/// drift (A. Wahrburg et al., IEEE CASE 2015, p. 1246). A contact is a torque that was not there
-/// before: the filter's innovations are compared with what steps of torque that began 1 .. kWindow
-/// steps ago would make of them (generalised likelihood ratio, A. Willsky, H. Jones, IEEE TAC 21
-/// (1976) 108). So the threshold follows from noise and from what is not known yet: a joint near
-/// its reversal, whose friction may have turned or not, tells nothing. Owns its memory: one a
-/// thread.
+/// drift (A. Wahrburg et al., IEEE CASE 2015, p. 1246). A joint near its reversal, whose friction
+/// may have turned or not, has a torque of its own that comes and goes within some steps. A contact
+/// is a torque that was not there before: the filter's innovations are compared with what steps of
+/// torque that began 1 .. kWindow steps ago would make of them (generalised likelihood ratio, A.
+/// Willsky, H. Jones, IEEE TAC 21 (1976) 108). So the threshold follows from noise and from what is
+/// not known yet. Owns its memory: one a thread.
 class ContactObserver {
  public:
   static constexpr int kWindow = 16;  ///< steps for which a contact is looked for
@@ -75,9 +75,15 @@ class ContactObserver {
   void find_moving(const JointVec& q);
   void correct(const JointVec& q);
   [[nodiscard]] std::optional<NoticedContact> weigh();
-  [[nodiscard]] Eigen::Index first(int joint) const {
+  [[nodiscard]] JointVec most_friction() const;
+  void replace(Eigen::Index to, Eigen::Index from, double factor);
+  // Where the unknowns of a joint stand: its friction when it moves, drift, friction when it may
+  // stand.
+  [[nodiscard]] Eigen::Index friction(int joint) const {
     return 2 * joints_ + errors_.count() + joint;
   }
+  [[nodiscard]] Eigen::Index drift(int joint) const { return friction(joint) + joints_; }
+  [[nodiscard]] Eigen::Index standing(int joint) const { return drift(joint) + joints_; }
 
   /// Which torque would have begun when, and what came of it: innovations of the steps since.
   struct Onset {
@@ -85,23 +91,14 @@ class ContactObserver {
     Eigen::VectorXd evidence;     ///< (dof,)
   };
 
-  /// Joints by whether their friction was known since an onset: those where it was not, then those
-  /// where it was.
-  struct Ordered {
-    std::vector<int> joints;
-    int doubtful = 0;
-  };
-  [[nodiscard]] Ordered order(int age) const;
-
   Arm arm_;
   ContactOptions options_;
   StepInverse inverse_;
   LinkErrors errors_;
   double h_;
   int joints_;
-  Eigen::Index unknown_;      ///< what is constant or slow: link errors, friction, drift
-  JointVec prior_;            ///< (dof,) inverse variance of the torque of a contact
-  std::vector<int> settled_;  ///< steps for which the direction of a joint has been known
+  Eigen::Index unknown_;  ///< link errors, friction, drift, friction of joints that may stand
+  JointVec prior_;        ///< (dof,) inverse variance of the torque of a contact
   std::vector<double> qpos_, qvel_;
   bool runs_ = false;
   Eigen::VectorXd x_;  ///< positions, velocities, unknowns
