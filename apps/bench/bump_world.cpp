@@ -10,6 +10,7 @@
 #include "apps/bench/robust_lap.hpp"
 #include "mjarm/collision/exact.hpp"
 #include "mjarm/control/contact_observer.hpp"
+#include "mjarm/control/contact_place.hpp"
 #include "mjarm/control/step_inverse.hpp"
 #include "mjarm/core/linear_algebra.hpp"
 #include "mjarm/execution/motion_clock.hpp"
@@ -117,6 +118,7 @@ class BumpDrive {
         h_(known.model.timestep()),
         controller_(std::move(controller)),
         observer_(std::move(observer)),
+        places_(known.model, known.arm),
         checker_(std::move(checker)),
         inverse_(known.model, known.arm),
         rng_(rng),
@@ -208,7 +210,7 @@ class BumpDrive {
       if (!noticed_) noticed_ = t;
       if (t <= *noticed_ + kNamed && noticed->surprise > strongest_) {
         strongest_ = noticed->surprise;
-        out_.named = noticed->joint;
+        out_.named = places_.find(joints_read(), *noticed).joint;
       }
     }
     if (!bump_ || t < kLearned) return;
@@ -219,6 +221,13 @@ class BumpDrive {
     out_.moments.push_back(std::move(moment));
     const double first = bump_->from ? *bump_->from - kBefore : t - kBefore;
     while (out_.moments.front().time < first) out_.moments.erase(out_.moments.begin());
+  }
+
+  /// What the encoders say.
+  [[nodiscard]] JointVec joints_read() const {
+    JointVec q(arm_.dof());
+    for (int i = 0; i < arm_.dof(); ++i) q[i] = drives_.qpos()[arm_.joints[i].qpos];
+    return q;
   }
 
   void push() {
@@ -265,6 +274,7 @@ class BumpDrive {
   double h_;
   Controller controller_;
   ContactObserver observer_;
+  ContactPlaces places_;
   ExactChecker checker_;
   StepInverse inverse_;
   Rng rng_;

@@ -16,7 +16,6 @@ constexpr double kRubs = 1e-3;         // the same of the friction
 constexpr double kForgets = 0.02;      // of a link error, in its standard deviation
 constexpr double kSolverStep = 1e-7;   // [rad or m] what a simulation rounds where encoders do not
 constexpr double kMostTorque = 1;      // of the largest torque: prior deviation of a contact's
-constexpr double kLeft = 12, kLeftShare = 0.01;  // squared deviations that are left over by chance
 // Friction of a joint whose direction nobody knows: its deviation, in the joint's own when it moves
 // (more than one, as it may turn in a step), and what is left of it after a step.
 constexpr double kStanding = 2.5, kKept = 0.75;
@@ -40,35 +39,6 @@ void add_torque_noise(Eigen::MatrixXd& P, const Eigen::MatrixXd& inverse_mass,
   P.block(n, 0, n, n) += h * Q;
   P.block(n, n, n, n) += Q;
 }
-
-/// Evidence of an onset: L L^T = information + 1 / prior, L y = evidence. The first joints explain
-/// |y of those|^2 by themselves.
-struct Factor {
-  Eigen::MatrixXd L;
-  Eigen::VectorXd y;
-
-  Factor(const Eigen::MatrixXd& information, const Eigen::VectorXd& evidence, const JointVec& prior)
-      : L(Eigen::MatrixXd::Zero(evidence.size(), evidence.size())), y(evidence.size()) {
-    for (Eigen::Index i = 0; i < y.size(); ++i) {
-      for (Eigen::Index j = 0; j < i; ++j) {
-        L(i, j) = (information(i, j) - L.row(i).head(j).dot(L.row(j).head(j))) / L(j, j);
-      }
-      L(i, i) = std::sqrt(information(i, i) + prior[i] - L.row(i).head(i).squaredNorm());
-      y[i] = (evidence[i] - L.row(i).head(i).dot(y.head(i))) / L(i, i);
-    }
-  }
-
-  /// The torques of the first `count` joints that explain most.
-  [[nodiscard]] JointVec torque(int count) const {
-    JointVec out = JointVec::Zero(y.size());
-    for (int i = count - 1; i >= 0; --i) {
-      double sum = y[i];
-      for (int j = i + 1; j < count; ++j) sum -= L(j, i) * out[j];
-      out[i] = sum / L(i, i);
-    }
-    return out;
-  }
-};
 
 }  // namespace
 
@@ -276,30 +246,28 @@ std::optional<NoticedContact> ContactObserver::weigh() {
   for (int age = 1; age < filled_; ++age) {
     const int k = (newest_ - age + kWindow) % kWindow;
     const Onset& onset = onsets_[static_cast<std::size_t>(k)];
-    const Factor factor(onset.information, onset.evidence, prior_);
-    const double surprise = factor.y.squaredNorm();
+    const JointVec torque = explain(onset);
+    const double surprise = torque.dot(onset.evidence);
     if (surprise <= surprise_) continue;
     surprise_ = surprise;
     if (surprise < options_.surprise) continue;
-    int last = 0;
-    for (double left = surprise - factor.y[0] * factor.y[0];
-         left > std::max(kLeft, kLeftShare * surprise);) {
-      ++last;
-      left -= factor.y[last] * factor.y[last];
-    }
-    out = {.joint = last,
-           .torque = factor.torque(last + 1),
+    out = {.torque = torque,
            .since = (age + 1) * h_,
-           .surprise = surprise};
+           .surprise = surprise,
+           .information = onset.information,
+           .evidence = onset.evidence};
   }
   return out;
 }
 
-JointVec ContactObserver::torque() const {
-  const Onset& onset = onsets_[static_cast<std::size_t>((newest_ + 1) % kWindow)];
+JointVec ContactObserver::explain(const Onset& onset) const {
   Eigen::MatrixXd C = onset.information;
   C.diagonal() += prior_;
   return solve_symmetric(C, onset.evidence);
+}
+
+JointVec ContactObserver::torque() const {
+  return explain(onsets_[static_cast<std::size_t>((newest_ + 1) % kWindow)]);
 }
 
 }  // namespace mjarm

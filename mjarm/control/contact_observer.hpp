@@ -30,10 +30,13 @@ struct ContactOptions {
 
 /// A contact, as joints tell it.
 struct NoticedContact {
-  int joint = -1;    ///< the last joint whose torque it takes: its link was touched, or one beyond
-  JointVec torque;   ///< [N m or N] (dof,) what it does to the joints
-  double since = 0;  ///< [s] for how long it has been there
+  JointVec torque;      ///< [N m or N] (dof,) what it does to the joints
+  double since = 0;     ///< [s] for how long it has been there
   double surprise = 0;  ///< see ContactOptions
+  /// (dof, dof), (dof,) A torque t from outside has the log likelihood
+  /// t evidence - t information t / 2, beside that of none.
+  Eigen::MatrixXd information;
+  Eigen::VectorXd evidence;
 };
 
 /// Notices a force on an arm that nobody planned, from positions and commands alone. The
@@ -90,6 +93,7 @@ class ContactObserver {
     Eigen::MatrixXd information;  ///< (dof, dof)
     Eigen::VectorXd evidence;     ///< (dof,)
   };
+  [[nodiscard]] JointVec explain(const Onset& onset) const;
 
   Arm arm_;
   ContactOptions options_;

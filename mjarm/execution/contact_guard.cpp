@@ -3,15 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
-#include "mjarm/core/linear_algebra.hpp"
 #include "mjarm/core/messages/execution.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/kinematics/fk.hpp"
-#include "mjarm/model/moved_bodies.hpp"
-#include "mjarm/model/scene_bodies.hpp"
 
 namespace mjarm {
 namespace {
@@ -20,23 +16,6 @@ constexpr std::array<std::string_view, 2> kReactions = {"ignore", "stop"};
 constexpr double kJudged = 0.014;    // [s] for which link and force may still be corrected
 constexpr double kShareBack = 0.25;  // of the limits, on the way back
 constexpr int kFewestBack = 25;      // [steps]
-
-/// The force at `p_W` of link `joint` that explains `torque` best, and what it leaves.
-struct ForceFit {
-  double force = 0, left = 0;
-};
-ForceFit fit_force(const Arm& arm, std::span<const Pose> X_WJ, int joint,
-                   const Eigen::Vector3d& p_W, const JointVec& torque) {
-  Eigen::MatrixXd J(joint + 1, 3);
-  for (int j = 0; j <= joint; ++j) {
-    const Pose& X = X_WJ[static_cast<std::size_t>(j)];
-    const Eigen::Vector3d axis = X.R * arm.joints[j].axis;
-    J.row(j) = (arm.joints[j].type == JointType::slide ? axis : axis.cross(p_W - X.p)).transpose();
-  }
-  const Eigen::VectorXd shown = torque.head(joint + 1);
-  const Eigen::VectorXd force = least_squares(J, shown);
-  return {force.norm(), (J * force - shown).norm()};
-}
 
 double smooth_way(double x) { return x * x * x * (10 - x * (15 - 6 * x)); }
 
@@ -53,7 +32,7 @@ Result<ContactReaction> contact_reaction(std::string_view word) {
 }
 
 ContactGuard::ContactGuard(const Model& model, const Arm& arm, ContactObserver observer)
-    : model_(model), arm_(arm), observer_(std::move(observer)) {}
+    : model_(model), arm_(arm), observer_(std::move(observer)), places_(model, arm) {}
 
 Result<ContactGuard> ContactGuard::create(const Model& model, const Arm& arm) {
   Result<ContactObserver> observer = ContactObserver::create(model, arm, {});
@@ -64,6 +43,7 @@ Result<ContactGuard> ContactGuard::create(const Model& model, const Arm& arm) {
 void ContactGuard::change_model(const Model& model) {
   // Its options, which are what could be wrong, are those that served before.
   observer_ = ContactObserver::create(model, arm_, {}).value();
+  places_ = ContactPlaces(model, arm_);
 }
 
 void ContactGuard::restart() {
@@ -91,26 +71,12 @@ bool ContactGuard::look(const Sim& sim, bool planned) {
 void ContactGuard::judge(const NoticedContact& noticed, const JointVec& q, double time) {
   if (noticed.surprise <= surprise_) return;
   surprise_ = noticed.surprise;
-  FeltContact felt{
-      .time = contact_ ? contact_->time : time, .joint = noticed.joint, .torque = noticed.torque};
-  for (const MovedBody& body : moved_bodies(model_, arm_)) {
-    if (body.joint != felt.joint) continue;
-    felt.link = scene_bodies(model_, arm_).name[static_cast<std::size_t>(body.body)];
-    break;
-  }
-  std::vector<Pose> X_WJ(static_cast<std::size_t>(arm_.dof()));
-  const Pose X_WT = fk_all(arm_, as_span(q), X_WJ);
-  const Eigen::Vector3d from = X_WJ[static_cast<std::size_t>(felt.joint)].p;
-  const Eigen::Vector3d to =
-      felt.joint + 1 < arm_.dof() ? X_WJ[static_cast<std::size_t>(felt.joint + 1)].p : X_WT.p;
-  double least = std::numeric_limits<double>::infinity();
-  for (const double share : {0.25, 0.5, 0.75, 1.0}) {
-    const ForceFit fit = fit_force(arm_, X_WJ, felt.joint, from + share * (to - from), felt.torque);
-    if (fit.left >= least) continue;
-    least = fit.left;
-    felt.force = fit.force;
-  }
-  contact_ = std::move(felt);
+  const ContactPlace place = places_.find(q, noticed);
+  contact_ = {.time = contact_ ? contact_->time : time,
+              .joint = place.joint,
+              .link = place.body,
+              .force = place.force_W.norm(),
+              .torque = noticed.torque};
 }
 
 /// As far back on the motion that was stopped as the tool has gone kBackOff, or to its beginning.

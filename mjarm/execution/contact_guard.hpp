@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mjarm/control/contact_observer.hpp"
+#include "mjarm/control/contact_place.hpp"
 #include "mjarm/control/controller.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/execution/motion_clock.hpp"
@@ -28,9 +29,9 @@ enum class ContactReaction {
 /// A contact that joints noticed.
 struct FeltContact {
   double time = 0;        ///< [s] of the simulation, when it was noticed
-  int joint = -1;         ///< the last joint that feels it
-  std::string link = {};  ///< the body that this joint moves
-  double force = 0;       ///< [N] about: the least at that link that explains the torques
+  int joint = -1;         ///< the last joint that moves what is touched
+  std::string link = {};  ///< the body that is touched (ContactPlaces)
+  double force = 0;       ///< [N] about: of what explains the torques the likeliest
   JointVec torque;        ///< (dof,) [N m or N] on the joints
 };
 
@@ -67,6 +68,7 @@ class ContactGuard {
   Model model_;
   Arm arm_;
   ContactObserver observer_;
+  ContactPlaces places_;
   std::optional<FeltContact> contact_;
   double surprise_ = 0;         ///< of `contact_`
   bool planned_ = false;        ///< in the last step

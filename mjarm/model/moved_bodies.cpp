@@ -57,10 +57,11 @@ std::vector<MovedBody> moved_bodies(const Model& model, const Arm& arm) {
     const int joint = mover(m, arm, body);
     if (joint < 0 || !(m->body_mass[body] > 0)) continue;
     const Pose X_WJ = standing(d, m->dof_bodyid[arm.joints[joint].dof]) * X_BJ[joint];
+    const Pose X_JB = X_WJ.inverse() * standing(d, body);
     const Pose X_JI = X_WJ.inverse() * Pose{Eigen::Vector3d(d->xipos + 3 * body),
                                             Eigen::Map<const RowMatrix>(d->ximat + 9 * body)};
     const Eigen::Map<const Eigen::Vector3d> principal(m->body_inertia + 3 * body);
-    out.push_back({body, joint, m->body_mass[body], X_JI.p,
+    out.push_back({body, joint, X_JB, m->body_mass[body], X_JI.p,
                    X_JI.R * principal.asDiagonal() * X_JI.R.transpose()});
   }
   return out;

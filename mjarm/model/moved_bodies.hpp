@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "mjarm/core/pose.hpp"
 #include "mjarm/model/arm.hpp"
 #include "mjarm/model/model.hpp"
 
@@ -12,6 +13,7 @@ namespace mjarm {
 struct MovedBody {
   int body = -1;                     ///< its number in the model
   int joint = -1;                    ///< index of the last joint of the arm that moves it
+  Pose X_JB;                         ///< its frame in the frame of that joint
   double mass = 0;                   ///< [kg] > 0
   Eigen::Vector3d center_J;          ///< [m] centre of mass in the frame of that joint
   Eigen::Matrix3d inertia_center_J;  ///< [kg m^2] about that centre, in the axes of that frame

@@ -1,0 +1,102 @@
+#include "mjarm/control/contact_place.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "mjarm/control/world_test.hpp"
+
+namespace mjarm::testing {
+namespace {
+
+/// What an observer without any noise would tell of a push of 40 N, torques by MuJoCo's Jacobian.
+NoticedContact contact_of(const Loaded& robot, World& world, int body, const Eigen::Vector3d& p_W,
+                          const Eigen::Vector3d& way_W) {
+  const int nv = static_cast<int>(world.m().nv), dof = robot.arm.dof();
+  std::vector<double> J(3 * static_cast<std::size_t>(nv));
+  mj_jac(&world.m(), &world.d(), J.data(), nullptr, p_W.data(), body);
+  NoticedContact out{.torque = JointVec::Zero(dof)};
+  for (int j = 0; j < dof; ++j) {
+    for (int x = 0; x < 3; ++x) {
+      out.torque[j] +=
+          40 * way_W[x] * J[static_cast<std::size_t>(x * nv + robot.arm.joints[j].dof)];
+    }
+  }
+  out.information = 25 * Eigen::MatrixXd::Identity(dof, dof);  // 0.2 N m
+  out.evidence = out.information * out.torque;
+  out.surprise = out.torque.dot(out.evidence);
+  return out;
+}
+
+struct Named {
+  int pushes = 0, right = 0, near = 0, force = 0;
+};
+/// Pushes on all links where a ray of MuJoCo's towards the middle of a link meets it.
+Named name_pushes(const std::string& name) {
+  const Loaded robot = load_shipped(name);
+  World world(robot, robot.arm.home);
+  mj_forward(&world.m(), &world.d());
+  const ContactPlaces places(robot.model, robot.arm);
+  Named out;
+  for (int body = 1; body < world.m().nbody; ++body) {
+    int joint = -1;
+    for (int j = 0; j < robot.arm.dof(); ++j) {
+      const int mover = world.m().dof_bodyid[robot.arm.joints[j].dof];
+      for (int b = body; b > 0; b = world.m().body_parentid[b]) joint = b == mover ? j : joint;
+    }
+    if (joint < 1) continue;
+    const Eigen::Vector3d middle(world.d().xipos + 3 * body);
+    for (int axis = 0; axis < 6; ++axis) {
+      const Eigen::Vector3d way = (axis < 3 ? 1 : -1) * Eigen::Vector3d::Unit(axis % 3);
+      const Eigen::Vector3d from = middle - way;
+      int geom = -1;
+      Eigen::Vector3d normal;
+      const double far = mj_ray(&world.m(), &world.d(), from.data(), way.data(), nullptr, 1, -1,
+                                &geom, normal.data());
+      if (geom < 0 || world.m().geom_bodyid[geom] != body || -normal.dot(way) < 0.9) continue;
+      const NoticedContact contact = contact_of(robot, world, body, from + far * way, way);
+      if (contact.surprise < 64) continue;
+      const ContactPlace place = places.find(robot.arm.home, contact);
+      ++out.pushes;
+      out.right += place.joint == joint ? 1 : 0;
+      out.near += std::abs(place.joint - joint) <= 1 ? 1 : 0;
+      out.force += std::abs(place.force_W.norm() - 40) < 20 ? 1 : 0;
+    }
+  }
+  return out;
+}
+
+TEST(ContactPlaces, TheLinkThatIsPushedIsNamed) {
+  for (const char* robot : {"ur5e", "panda"}) {
+    const Named named = name_pushes(robot);
+    EXPECT_GE(named.pushes, 12) << robot;
+    EXPECT_GE(named.right, 0.75 * named.pushes) << robot << " of " << named.pushes;
+    EXPECT_GE(named.near, 0.95 * named.pushes) << robot << " of " << named.pushes;
+    EXPECT_GE(named.force, 0.6 * named.pushes) << robot << " of " << named.pushes;
+  }
+}
+
+TEST(ContactPlaces, ALinkOfWhichNothingIsDrawnHasAPlaceToo) {
+  const Loaded robot = load_text(R"(<mujoco><compiler angle="radian"/><default>
+    <joint axis="0 1 0" range="-2 2" limited="true"/>
+    <geom type="capsule" fromto="0 0 0 0 0 .3" size=".03" group="3"/></default>
+    <worldbody><body name="one"><joint name="a"/><geom/>
+    <body name="two" pos="0 0 .3"><joint name="b" axis="1 0 0"/><geom/>
+    <body name="three" pos="0 0 .3"><joint name="c"/><geom/><site name="tool" pos="0 0 .3"/>
+    </body></body></body></worldbody>
+    <actuator><motor joint="a"/><motor joint="b"/><motor joint="c"/></actuator></mujoco>)");
+  World world(robot, robot.arm.home);
+  mj_forward(&world.m(), &world.d());
+  const ContactPlaces places(robot.model, robot.arm);
+  for (const char* name : {"one", "two", "three"}) {
+    const int body = mj_name2id(&world.m(), mjOBJ_BODY, name);
+    ASSERT_GT(body, 0);
+    const Eigen::Vector3d middle(world.d().xipos + 3 * body);
+    const Eigen::Vector3d way = Eigen::Vector3d(1, 0.4, 0).normalized();
+    const NoticedContact contact = contact_of(robot, world, body, middle, way);
+    EXPECT_EQ(places.find(robot.arm.home, contact).body, name);
+  }
+}
+
+}  // namespace
+}  // namespace mjarm::testing
