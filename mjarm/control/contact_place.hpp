@@ -13,9 +13,10 @@ namespace mjarm {
 
 /// Where an arm is touched, as far as its joints tell.
 struct ContactPlace {
-  int joint = -1;                ///< of the arm, the last one that moves what is touched
-  std::string body;              ///< that is touched; `#7`, its number, where it has no name
-  Eigen::Vector3d p_W, force_W;  ///< [m], [N] where and how, of all that explains it the likeliest
+  int joint = -1;    ///< of the arm, the last one that moves what is touched
+  std::string body;  ///< that is touched; `#7`, its number, where it has no name
+  Eigen::Vector3d p_W = Eigen::Vector3d::Zero();      ///< [m] the likeliest place
+  Eigen::Vector3d force_W = Eigen::Vector3d::Zero();  ///< [N] that explains most there
 };
 
 /// Tells from the torques of a contact which link it is on: a single force that pushes at a point
