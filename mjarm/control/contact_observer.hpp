@@ -35,8 +35,8 @@ struct NoticedContact {
   double surprise = 0;  ///< see ContactOptions
   /// (dof, dof), (dof,) A torque t from outside has the log likelihood
   /// t evidence - t information t / 2, beside that of none.
-  Eigen::MatrixXd information;
-  Eigen::VectorXd evidence;
+  Eigen::MatrixXd information = {};
+  Eigen::VectorXd evidence = {};
 };
 
 /// Notices a force on an arm that nobody planned, from positions and commands alone. The
