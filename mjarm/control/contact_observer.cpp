@@ -21,6 +21,16 @@ constexpr double kMostTorque = 1;      // of the largest torque: prior deviation
 constexpr double kStanding = 2.5, kKept = 0.75;
 constexpr std::size_t kShortLook = 5, kLongLook = 20;  // [steps] in which a joint has moved
 
+/// For so many steps of time an encoder is off by about the same amount: while a joint takes
+/// several for one step of its encoder, and where it goes nearly a whole number of them in each.
+/// @param pace, change  steps of the encoder in a step of time, and by how much that changes.
+double rounded_alike(double pace, double change) {
+  const double off = std::abs(pace - std::round(pace));
+  const double steps =
+      pace < 0.5 ? 1 / std::max(off, 1e-12) : 1 / (off + std::sqrt(off * off + change));
+  return std::clamp(steps, 1.0, 20.0);
+}
+
 /// F X, F = [1 h hG; 0 1 G; 0 0 1]: how positions, velocities and unknowns go on. G is (dof,
 /// unknowns).
 void carry(Eigen::MatrixXd& X, const Eigen::MatrixXd& G, double h) {
@@ -195,10 +205,8 @@ void ContactObserver::correct(const JointVec& q) {
   const Eigen::Index n = joints_;
   const double step = std::max(options_.encoder_step, kSolverStep);
   for (Eigen::Index i = 0; i < n; ++i) {
-    // A joint that takes several steps of time for one of its encoder is off by the same amount all
-    // that while.
-    const double pace = std::abs(x_[n + i]) * h_;
-    const double same = std::clamp(step / std::max(pace, 1e-12), 1.0, 20.0);
+    const double same =
+        rounded_alike(std::abs(x_[n + i]) * h_ / step, h_ * h_ * std::abs(w_[i]) / step);
     const double S = P_(i, i) + same * step * step / 12;
     const double off = q[i] - x_[i];
     const Eigen::VectorXd K = P_.col(i) / S;

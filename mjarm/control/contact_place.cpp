@@ -114,8 +114,9 @@ ContactPlace ContactPlaces::find(const JointVec& q, const NoticedContact& contac
       torques.row(static_cast<Eigen::Index>(j)) =
           (feels.type == JointType::slide ? axis : axis.cross(p_W - X_WJ[j].p)).transpose() * edges;
     }
-    const Eigen::Matrix4d H = torques.transpose() * contact.information * torques +
-                              edges.transpose() * edges / (kUsualForce * kUsualForce);
+    const Eigen::Matrix4d H =
+        torques.transpose() * contact.information * torques +
+        edges.transpose() * edges * (0.5 * spread / (kUsualForce * kUsualForce));
     const Eigen::Vector4d g = torques.transpose() * contact.evidence;
     const Eigen::Vector4d shares = best_shares(H, g);
     const double explained = 2 * g.dot(shares) - shares.dot(H * shares);

