@@ -25,7 +25,7 @@ struct ContactOptions {
   ModelErrors errors = {};
   /// A contact is told where its torques are so unlikely: the squared distance, in standard
   /// deviations, of what they do to the motion from what noise and errors explain. > 0
-  double surprise = 64;
+  double surprise = 49;
 };
 
 /// A contact, as joints tell it.
