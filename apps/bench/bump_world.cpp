@@ -81,26 +81,10 @@ Bump draw_bump(const Model& model, const Arm& arm, std::span<const MovedBody> bo
     const MovedBody& body = bodies[rng.below(bodies.size())];
     const auto skin = body_surface(model, names.name[static_cast<std::size_t>(body.body)]);
     if (!skin) continue;  // a load without a shape
-    std::vector<double> areas;
-    double area = 0;
-    const auto edges = [&](const std::array<int, 3>& t) {
-      const Eigen::Vector3d& p = skin->vertices[static_cast<std::size_t>(t[0])];
-      return std::pair<Eigen::Vector3d, Eigen::Vector3d>(
-          skin->vertices[static_cast<std::size_t>(t[1])] - p,
-          skin->vertices[static_cast<std::size_t>(t[2])] - p);
-    };
-    for (const auto& triangle : skin->triangles) {
-      const auto [a, b] = edges(triangle);
-      areas.push_back(area += a.cross(b).norm());
-    }
-    const auto k = static_cast<std::size_t>(std::ranges::lower_bound(areas, rng.uniform() * area) -
-                                            areas.begin());
-    const auto [a, b] = edges(skin->triangles[k]);
-    double u = rng.uniform(), w = rng.uniform();
-    if (u + w > 1) u = 1 - u, w = 1 - w;
+    const SurfacePoint point = SurfacePoints(*skin).draw(rng.uniform(), rng);
     const Eigen::Vector3d aside(rng.normal(), rng.normal(), rng.normal());
-    out.p_B = skin->vertices[static_cast<std::size_t>(skin->triangles[k][0])] + u * a + w * b;
-    out.way_B = (0.5 * aside.normalized() - a.cross(b).normalized()).normalized();
+    out.p_B = point.p;
+    out.way_B = (0.5 * aside.normalized() - point.outward).normalized();
     out.body = body.body;
     out.link = body.joint;
     out.force = rng.uniform(25, 80);
@@ -210,7 +194,7 @@ class BumpDrive {
       if (!noticed_) noticed_ = t;
       if (t <= *noticed_ + kNamed && noticed->surprise > strongest_) {
         strongest_ = noticed->surprise;
-        out_.named = places_.find(joints_read(), *noticed).joint;
+        out_.named = places_.find(arm_positions(arm_, drives_.qpos()), *noticed).joint;
       }
     }
     if (!bump_ || t < kLearned) return;
@@ -221,13 +205,6 @@ class BumpDrive {
     out_.moments.push_back(std::move(moment));
     const double first = bump_->from ? *bump_->from - kBefore : t - kBefore;
     while (out_.moments.front().time < first) out_.moments.erase(out_.moments.begin());
-  }
-
-  /// What the encoders say.
-  [[nodiscard]] JointVec joints_read() const {
-    JointVec q(arm_.dof());
-    for (int i = 0; i < arm_.dof(); ++i) q[i] = drives_.qpos()[arm_.joints[i].qpos];
-    return q;
   }
 
   void push() {

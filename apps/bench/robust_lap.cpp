@@ -217,11 +217,11 @@ Result<Controller> drive_references(const WrongDrive& drive, std::uint64_t seed,
   for (std::size_t i = 0; i + 2 < drive.q.size(); ++i) {
     drives.read(sim.qpos(), sim.qvel());
     const StepReference reference = reference_at(drive.q, i);
-    WrongStep step{.index = i + 1, .q = JointVec(arm.dof()), .torque = JointVec(arm.dof())};
+    WrongStep step{
+        .index = i + 1, .q = arm_positions(arm, drives.qpos()), .torque = JointVec(arm.dof())};
     step.limited = controller->command(drives.qpos(), drives.qvel(), reference, ctrl);
     for (int j = 0; j < arm.dof(); ++j) {
       const ArmActuator& actuator = *arm.joints[j].actuator;
-      step.q[j] = drives.qpos()[arm.joints[j].qpos];
       step.torque[j] = actuator.gear * ctrl[actuator.id];
       step.torque_use = std::max(step.torque_use, std::abs(step.torque[j]) / arm.limits.torque[j]);
     }

@@ -132,8 +132,7 @@ void ContactObserver::take(const JointVec& torque) {
 
 std::optional<NoticedContact> ContactObserver::look(std::span<const double> qpos,
                                                     std::span<const double> qvel) {
-  JointVec q(joints_);
-  for (int i = 0; i < joints_; ++i) q[i] = qpos[arm_.joints[i].qpos];
+  const JointVec q = arm_positions(arm_, qpos);
   qpos_.assign(qpos.begin(), qpos.end());
   qvel_.assign(qvel.begin(), qvel.end());
   if (!runs_ || told_.empty() || (q - x_.head(joints_)).cwiseAbs().maxCoeff() > kContactJump) {

@@ -1,9 +1,7 @@
 #include "mjarm/control/contact_place.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <span>
 #include <utility>
 
 #include "mjarm/core/rng.hpp"
@@ -23,41 +21,22 @@ constexpr double kUsualForce = 50;  // [N] deviation: a small lever needs a larg
 // hundreds of standard deviations would take the nearest point for certain.
 constexpr double kWrongShare = 0.01;
 
-struct SkinPoint {
-  Eigen::Vector3d p_B, in_B;
-};
-
 /// Points spread evenly over what is drawn of a body; where nothing is, its centre of mass, pushed
 /// along its axes.
-std::vector<SkinPoint> skin_points(const Result<Surface>& skin, const Eigen::Vector3d& center_B,
-                                   Rng rng) {
-  std::vector<SkinPoint> out;
-  if (!skin) {
-    for (const double sign : {-1.0, 1.0}) {
-      for (int axis = 0; axis < 3; ++axis) {
-        out.push_back({center_B, sign * Eigen::Vector3d::Unit(axis)});
-      }
+std::vector<SurfacePoint> skin_points(const Result<Surface>& skin,
+                                      const Eigen::Vector3d& center_B) {
+  std::vector<SurfacePoint> out;
+  if (const SurfacePoints points(skin ? *skin : Surface{}); points.area() > 0) {
+    Rng rng(1);
+    for (int i = 0; i < kPoints; ++i) {
+      out.push_back(points.draw((i + rng.uniform()) / kPoints, rng));
     }
     return out;
   }
-  const auto corner = [&](std::size_t triangle, std::size_t i) -> const Eigen::Vector3d& {
-    return skin->vertices[static_cast<std::size_t>(skin->triangles[triangle][i])];
-  };
-  std::vector<double> areas;
-  double area = 0;
-  for (std::size_t k = 0; k < skin->triangles.size(); ++k) {
-    const Eigen::Vector3d& p = corner(k, 0);
-    areas.push_back(area += 0.5 * (corner(k, 1) - p).cross(corner(k, 2) - p).norm());
-  }
-  if (!(area > 0)) return skin_points(fail(Errc::bad_input, {}), center_B, rng);
-  for (int i = 0; i < kPoints; ++i) {
-    const double at = area * (i + rng.uniform()) / kPoints;
-    const auto k = static_cast<std::size_t>(std::ranges::lower_bound(areas, at) - areas.begin());
-    if (k == areas.size()) continue;
-    const Eigen::Vector3d a = corner(k, 1) - corner(k, 0), b = corner(k, 2) - corner(k, 0);
-    double u = rng.uniform(), w = rng.uniform();
-    if (u + w > 1) u = 1 - u, w = 1 - w;
-    out.push_back({corner(k, 0) + u * a + w * b, -a.cross(b).normalized()});
+  for (const double sign : {-1.0, 1.0}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      out.push_back({center_B, sign * Eigen::Vector3d::Unit(axis)});
+    }
   }
   return out;
 }
@@ -88,9 +67,9 @@ ContactPlaces::ContactPlaces(const Model& model, const Arm& arm) : arm_(arm) {
   for (const MovedBody& body : moved_bodies(model, arm)) {
     const std::string& name = scene.name[static_cast<std::size_t>(body.body)];
     const Eigen::Vector3d center_B = body.X_JB.inverse() * body.center_J;
-    const auto skin = skin_points(body_surface(model, name), center_B, Rng(1));
-    for (const SkinPoint& point : skin) {
-      points_.push_back({bodies_.size(), body.X_JB * point.p_B, body.X_JB.R * point.in_B,
+    const auto skin = skin_points(body_surface(model, name), center_B);
+    for (const SurfacePoint& point : skin) {
+      points_.push_back({bodies_.size(), body.X_JB * point.p, -(body.X_JB.R * point.outward),
                          1.0 / static_cast<double>(skin.size())});
     }
     bodies_.push_back({body.joint, name});

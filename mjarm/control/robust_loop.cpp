@@ -103,8 +103,7 @@ RobustLoop::Motion RobustLoop::motion_at(const JointVec& q, const JointVec& v) {
 
 JointVec RobustLoop::torque(std::span<const double> qpos, std::span<const double> qvel,
                             const StepReference& reference) {
-  JointVec q(arm_.dof());
-  for (int i = 0; i < arm_.dof(); ++i) q[i] = qpos[arm_.joints[i].qpos];
+  const JointVec q = arm_positions(arm_, qpos);
   qpos_.assign(qpos.begin(), qpos.end());
   qvel_.assign(qvel.begin(), qvel.end());
   if (!runs_ || (q - q_).cwiseAbs().maxCoeff() > kJump) begin(qpos, q);

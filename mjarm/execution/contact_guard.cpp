@@ -43,7 +43,6 @@ Result<ContactGuard> ContactGuard::create(const Model& model, const Arm& arm) {
 void ContactGuard::change_model(const Model& model) {
   // Its options, which are what could be wrong, are those that served before.
   observer_ = ContactObserver::create(model, arm_, {}).value();
-  places_ = ContactPlaces(model, arm_);
 }
 
 void ContactGuard::restart() {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -128,5 +129,15 @@ struct Arm {
                        [&](const DesignOverlap& pair) { return pair.is_of(a, b); });
   }
 };
+
+/// The positions of an arm's joints, (dof,) [rad or m].
+/// @param qpos  (nq,) of its model
+[[nodiscard]] inline JointVec arm_positions(const Arm& arm, std::span<const double> qpos) {
+  JointVec q(arm.dof());
+  for (int i = 0; i < arm.dof(); ++i) {
+    q[i] = qpos[static_cast<std::size_t>(arm.joints[static_cast<std::size_t>(i)].qpos)];
+  }
+  return q;
+}
 
 }  // namespace mjarm

@@ -3,11 +3,13 @@
 #include <mujoco/mujoco.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "mjarm/core/messages/model.hpp"
 #include "mjarm/core/nearest_word.hpp"
@@ -20,6 +22,15 @@ namespace {
 constexpr int kAround = 64;      // faces about an axis
 constexpr int kHalfAround = 16;  // rows of faces from the equator to a pole
 constexpr int kLastGroupSeen = 2;
+
+/// A corner of a triangle and the ways to the other two.
+struct Sides {
+  Sides(const Surface& surface, const std::array<int, 3>& triangle)
+      : p(surface.vertices[static_cast<std::size_t>(triangle[0])]),
+        a(surface.vertices[static_cast<std::size_t>(triangle[1])] - p),
+        b(surface.vertices[static_cast<std::size_t>(triangle[2])] - p) {}
+  Eigen::Vector3d p, a, b;
+};
 
 /// Turns a curve (r, z), from the lower end of the z axis to its upper one, about that axis; both
 /// ends lie on it. Without the volume that flat faces cut away the radius is a little larger.
@@ -149,6 +160,22 @@ Surface box_surface(const Eigen::Vector3d& half) {
 Surface cylinder_surface(double radius, double half_height) {
   return turned(
       {{0, -half_height}, {radius, -half_height}, {radius, half_height}, {0, half_height}});
+}
+
+SurfacePoints::SurfacePoints(Surface surface) : surface_(std::move(surface)) {
+  up_to_.reserve(surface_.triangles.size());
+  for (const std::array<int, 3>& triangle : surface_.triangles) {
+    const Sides sides(surface_, triangle);
+    up_to_.push_back(area() + 0.5 * sides.a.cross(sides.b).norm());
+  }
+}
+
+SurfacePoint SurfacePoints::draw(double share, Rng& rng) const {
+  const auto at = std::ranges::lower_bound(up_to_, share * area());
+  const Sides sides(surface_, surface_.triangles[static_cast<std::size_t>(at - up_to_.begin())]);
+  double u = rng.uniform(), w = rng.uniform();
+  if (u + w > 1) u = 1 - u, w = 1 - w;
+  return {sides.p + u * sides.a + w * sides.b, sides.a.cross(sides.b).normalized()};
 }
 
 void append(Surface& surface_A, const Surface& surface_B, const Pose& X_AB) {

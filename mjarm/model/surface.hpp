@@ -7,6 +7,7 @@
 
 #include "mjarm/core/pose.hpp"
 #include "mjarm/core/result.hpp"
+#include "mjarm/core/rng.hpp"
 #include "mjarm/model/model.hpp"
 
 namespace mjarm {
@@ -23,6 +24,30 @@ struct Surface {
 /// A cylinder about the z axis, in 64 faces around; its volume is that of the round one.
 /// @param radius, half_height  [m] > 0
 [[nodiscard]] Surface cylinder_surface(double radius, double half_height);
+
+/// A place on a surface, in the surface's frame.
+struct SurfacePoint {
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();        ///< [m]
+  Eigen::Vector3d outward = Eigen::Vector3d::Zero();  ///< unit normal, away from the solid
+};
+
+/// Draws points of a surface: every part of its area is as likely.
+class SurfacePoints {
+ public:
+  explicit SurfacePoints(Surface surface);
+
+  [[nodiscard]] double area() const noexcept {
+    return up_to_.empty() ? 0 : up_to_.back();
+  }  ///< [m^2]
+  /// The point at a share of the area, counted triangle by triangle, anywhere in its triangle.
+  /// Shares in equal steps spread points evenly. Needs area() > 0.
+  /// @param share  in [0, 1]
+  [[nodiscard]] SurfacePoint draw(double share, Rng& rng) const;
+
+ private:
+  Surface surface_;
+  std::vector<double> up_to_;  ///< [m^2] of the triangles up to each one
+};
 
 /// Adds a surface that is given in B to one in A.
 void append(Surface& surface_A, const Surface& surface_B, const Pose& X_AB);

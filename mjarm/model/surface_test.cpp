@@ -34,6 +34,30 @@ TEST(Surface, BoxesAndCylindersEncloseTheirVolume) {
   EXPECT_NEAR(top_of(both), 3.1, 1e-12);
 }
 
+TEST(Surface, PointsAreSpreadByArea) {
+  Surface two = box_surface({0.1, 0.2, 0.3});
+  append(two, box_surface({0.2, 0.4, 0.6}), {.p = {5, 0, 0}});
+  const SurfacePoints points(two);
+  EXPECT_NEAR(points.area(), 0.88 + 3.52, 1e-12);
+  constexpr int kDraws = 8000;
+  int on_first = 0, on_top = 0;
+  Rng rng(1);
+  for (int i = 0; i < kDraws; ++i) {
+    const auto [p, outward] = points.draw((i + 0.5) / kDraws, rng);
+    const bool first = p.x() < 2.5;
+    const double size = first ? 1 : 2;
+    const Eigen::Vector3d at = (p - Eigen::Vector3d(first ? 0 : 5, 0, 0))
+                                   .cwiseQuotient(size * Eigen::Vector3d(0.1, 0.2, 0.3));
+    EXPECT_NEAR(at.cwiseAbs().maxCoeff(), 1, 1e-12);  // on a face of the box
+    EXPECT_NEAR(at.dot(outward), 1, 1e-12);           // whose normal this is
+    on_first += first ? 1 : 0;
+    on_top += outward.z() > 0.5 ? 1 : 0;
+  }
+  EXPECT_NEAR(on_first / double{kDraws}, 0.2, 1e-3);
+  EXPECT_NEAR(on_top / double{kDraws}, 0.08 / 0.88, 1e-3);
+  EXPECT_EQ(SurfacePoints({}).area(), 0);
+}
+
 constexpr const char* kThings = R"(
 <mujoco>
   <asset><mesh name="wedge" vertex="0 0 0  1 0 0  0 1 0  0 0 1"/></asset>
