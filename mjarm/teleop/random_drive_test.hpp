@@ -2,12 +2,16 @@
 
 #include <mujoco/mujoco.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "mjarm/core/rng.hpp"
+#include "mjarm/core/rotation.hpp"
 #include "mjarm/model/robot.hpp"
 #include "mjarm/model/scene_bodies.hpp"
 #include "mjarm/sim/sim.hpp"
@@ -40,6 +44,66 @@ class RandomHand {
   Rng rng_;
   double until_ = 0;
   TeleopInput input_;
+};
+
+/// Somebody who every now and then takes something, and goes on at random with it in the hand.
+class GraspingHand {
+ public:
+  GraspingHand(const Robot& robot, std::uint64_t seed)
+      : arm_(robot.arm),
+        objects_(scene_bodies(robot.model, robot.arm).objects),
+        hand_(seed),
+        rng_(seed, 1) {}
+
+  TeleopInput at(const Sim& sim) {
+    if (sim.time() >= from_ + kCarried) {
+      from_ = sim.time();
+      if (!objects_.empty()) body_ = objects_[rng_.below(objects_.size())].body;
+    }
+    const double t = sim.time() - from_;
+    TeleopInput input = hand_.at(sim.time());
+    if (body_ < 0 || t < kAtRandom) return input;
+    if (t < kClosed) return fetch(sim, t);
+    input.grip = 0;
+    if (t < kLifted) input.linear = {0, 0, 0.2};
+    return input;
+  }
+
+ private:
+  // [s] Ends of what it does one after the other.
+  static constexpr double kAtRandom = 12, kAbove = 18, kDown = 21, kClosed = 22.5, kLifted = 23.5,
+                          kCarried = 32;
+
+  /// From above, across a side of the body.
+  [[nodiscard]] TeleopInput fetch(const Sim& sim, double t) const {
+    if (t > kDown) return {.grip = 2};
+    const Pose X_WT = sim.tool(arm_), X_WB = sim.body_pose(body_);
+    Eigen::Matrix3d R = Eigen::Matrix3d::Zero();
+    for (const double sign : {-1.0, 1.0}) {
+      for (int k = 0; k < 3; ++k) {
+        Eigen::Vector3d x = sign * X_WB.R.col(k);
+        if (std::abs(x.z()) > 0.3) continue;
+        x = Eigen::Vector3d(x.x(), x.y(), 0).normalized();
+        if (x.dot(X_WT.R.col(0)) > R.col(0).dot(X_WT.R.col(0)) || R.isZero()) {
+          R << x, Eigen::Vector3d(0, 0, -1).cross(x), Eigen::Vector3d(0, 0, -1);
+        }
+      }
+    }
+    const auto towards = [](const Eigen::Vector3d& way, double most) -> Eigen::Vector3d {
+      return 3 * way * std::min(1.0, most / (3 * way.norm() + 1e-9));
+    };
+    const Eigen::Vector3d above(0, 0, t < kAbove ? 0.12 : 0.0);
+    return {.linear = towards(X_WB.p + above - X_WT.p, t < kAbove ? 0.25 : 0.08),
+            .angular = towards(rotation_log(R * X_WT.R.transpose()), 1),
+            .grip = -2};
+  }
+
+  Arm arm_;
+  std::vector<SceneObject> objects_;
+  RandomHand hand_;
+  Rng rng_;
+  double from_ = -kCarried;
+  int body_ = -1;
 };
 
 /// Contacts that the arm should never have, by MuJoCo's own list and the tree of bodies: of links,
@@ -101,13 +165,13 @@ inline DriveResult drive(const Robot& robot, const TeleopOptions& options, std::
   Result<Teleop> teleop = Teleop::create(robot, options);
   if (!teleop) throw std::runtime_error(teleop.error().what);
   teleop->begin(sim);
-  RandomHand hand(seed);
+  GraspingHand hand(robot, seed);
   const ForbiddenContacts forbidden(robot);
   DriveResult out;
   int near = 0, all = 0;
   Eigen::Vector3d p = sim.tool(robot.arm).p;
   while (sim.time() < seconds && out.contact.empty()) {
-    if (auto done = teleop->advance(sim, hand.at(sim.time())); !done) {
+    if (auto done = teleop->advance(sim, hand.at(sim)); !done) {
       throw std::runtime_error(done.error().what);
     }
     out.contact = forbidden.first(sim);

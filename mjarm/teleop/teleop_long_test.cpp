@@ -17,6 +17,7 @@ TEST_P(TeleopLong, TenMinutesOfAnythingTouchNothing) {
     const testing::DriveResult result = testing::drive(robot, {}, seed, 600);
     EXPECT_EQ(result.contact, "") << "seed " << seed << ", " << result.time << " s";
     EXPECT_GT(result.way, 10) << "seed " << seed;
+    EXPECT_GT(result.held, 5) << "seed " << seed;
     std::cout << GetParam() << ", seed " << seed << ": " << result.way << " m, " << result.held
               << " s something was held\n";
   }

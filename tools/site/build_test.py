@@ -41,7 +41,14 @@ float twice(float a);
 /// A solver.
 class Solver {
  public:
+  explicit Solver(int a = int{1})
+      : secret_(a), more_{a} {}  ///< [m] "{"
   void solve();
+  bool done() const noexcept {
+    if (secret_) { return true; }
+    return false;
+  }
+  int most = 3;
 
  private:
   int secret_ = 0;
@@ -60,6 +67,7 @@ class CppTest(unittest.TestCase):
         self.assertIn('The word: "far", a\\_b \\<x\\>.\n\n- `why` — the reason, in short.\n\n- *returns* never empty.\n', page)
         self.assertIn("inline T twice(T a);\nfloat twice(float a);\n", page)
         self.assertIn("inline constexpr double kPi = std::numbers::pi_v<double>(3);", page)
+        self.assertIn('  explicit Solver(int a = int{1});  ///< [m] "{"\n  void solve();\n  bool done() const noexcept;\n  int most = 3;\n};', page)
         for gone in ("secret_", "class Other", "A remark", "return a"):
             self.assertNotIn(gone, page)
         self.assertEqual(cpp_api.header_section("mjarm/core/none.hpp", "#pragma once\nnamespace mjarm {\nclass A;\n}\n"), "")

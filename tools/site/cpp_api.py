@@ -36,6 +36,9 @@ WORDS = {
 }
 COMMENT = re.compile(r'((?:"(?:\\.|[^"\\])*"|[^"/]|/(?!/))*?)(//[/!]?<?)(.*)')
 
+# The end of a function's head, with what a constructor puts into members, and the bracket that opens its body.
+BODY = re.compile(r"(\)(?:\s*(?:const|noexcept|override|final|&&?|->[^{;]*?))*)(?:\s*:(?!:)[^;]*?[)}])?\s\{", re.S)
+
 
 class Chinese:
     """What the comments of a room say in Chinese, from docs/cpp/ROOM.zh-CN.txt: a section a header, a paragraph a piece."""
@@ -97,10 +100,24 @@ def declaration(code, say=None):
     """Without bodies of functions and without what is private."""
     text = "\n".join(code)
     if begins_type(text):
-        text = re.sub(r"\n private:.*?(?=\n(?: public:|\};))", "", text, flags=re.S).replace("\n\n};", "\n};")
+        text = without_bodies(re.sub(r"\n private:.*?(?=\n(?: public:|\};))", "", text, flags=re.S)).replace("\n\n};", "\n};")
     else:
         text = re.sub(r"\)([^{};]*?)\s*\{.*\}\s*$", r")\1;", text, flags=re.S) if "(" in text.split("{")[0] and "{" in text else text
     return commented(text, say) if say else text
+
+
+def without_bodies(text):
+    """A type whose functions are only declared: without their bodies, and without what constructors put into members."""
+    seen = re.sub(r'"(?:\\.|[^"\\])*"|//[^\n]*', lambda one: " " * len(one[0]), text)  # as long, without strings and comments
+    out, at = [], 0
+    while head := BODY.search(seen, at):
+        depth, end = 1, head.end()
+        while depth:
+            depth += (seen[end] == "{") - (seen[end] == "}")
+            end += 1
+        out += [text[at:head.end(1)], ";"]
+        at = end
+    return "".join(out) + text[at:]
 
 
 def commented(text, say):
