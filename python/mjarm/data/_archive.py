@@ -36,7 +36,7 @@ class Archive:
             self._check_end()
             self._zip = zipfile.ZipFile(source)
         except (zipfile.BadZipFile, NotImplementedError, ValueError) as bad:
-            raise fault(source, "no zip archive of an episode", "不是回合的 zip 归档") from bad
+            raise fault(source, "no zip archive of an episode", "不是回合的 zip 压缩包") from bad
         except OSError as bad:
             raise fault(source, f"cannot be read: {bad.strerror}", f"无法读取：{bad.strerror}") from bad
         entries = self._zip.infolist()
