@@ -113,11 +113,9 @@ TEST(DemoEllipse, EqualRunsGiveEqualBytes) {
 }
 
 TEST(DemoEllipse, DrawsOnMenageriesUr5e) {
-  MJARM_TEST_FILE(archive, "menagerie/universal_robots_ur5e.tar.xz");
+  MJARM_TEST_ARCHIVE(archive, "menagerie/universal_robots_ur5e.tar.xz");
   const TempFolder models;
-  ASSERT_EQ(support::run_program("/bin/tar", {"xf", archive.string(), "-C", models.path().string()})
-                .exit_code,
-            0);
+  support::unpack(archive, models.path());
   const TempFolder folder;
   const std::string scene = (models.path() / "universal_robots_ur5e/scene.xml").string();
   const DemoRun run = run_demo(folder, {"ellipse", "--robot", scene});

@@ -10,7 +10,6 @@
 #include "mjarm/install/mesh_sets.hpp"
 #include "mjarm/model/find_arm.hpp"
 #include "mjarm/model/model.hpp"
-#include "tests/support/run_program.hpp"
 #include "tests/support/temp_folder.hpp"
 #include "tests/support/test_data.hpp"
 
@@ -168,13 +167,11 @@ std::vector<Box> drawn_boxes(const mjModel* m) {
 }
 
 TEST_P(MeshScene, RealMeshesLieWhereTheShapesAre) {
-  MJARM_TEST_FILE(archive, "menagerie/" + set.folder + ".tar.xz");
+  MJARM_TEST_ARCHIVE(archive, "menagerie/" + set.folder + ".tar.xz");
   ASSERT_NO_FATAL_FAILURE(load_with([&](const fs::path& assets) {
     // Not from the wheel, but the same files: every mesh has the hash of our table.
     const support::TempFolder unpacked;
-    const auto done =
-        support::run_program("/bin/tar", {"xf", archive.string(), "-C", unpacked.path().string()});
-    ASSERT_EQ(done.exit_code, 0) << done.err;
+    support::unpack(archive, unpacked.path());
     for (const MeshFile& mesh : set.files) {
       const fs::path from = unpacked.path() / set.folder / "assets" / mesh.name;
       ASSERT_EQ(sha256_of_file(from).value_or(""), mesh.sha256) << from;

@@ -9,7 +9,6 @@
 #include "mjarm/model/dynamics.hpp"
 #include "mjarm/model/find_arm.hpp"
 #include "mjarm/model/test_chain_internal.hpp"
-#include "tests/support/run_program.hpp"
 #include "tests/support/temp_folder.hpp"
 #include "tests/support/test_data.hpp"
 
@@ -17,13 +16,6 @@ namespace mjarm {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Unpacks a folder of models into `folder`.
-void unpack(const fs::path& archive, const support::TempFolder& folder) {
-  const auto done =
-      support::run_program("/bin/tar", {"xf", archive.string(), "-C", folder.path().string()});
-  ASSERT_EQ(done.exit_code, 0) << done.err;
-}
 
 void expect_close(const Eigen::VectorXd& ours, const nlohmann::json& theirs, const char* what) {
   ASSERT_EQ(static_cast<std::size_t>(ours.size()), theirs.size()) << what;
@@ -70,10 +62,10 @@ struct PublicModel {
 class Menagerie : public ::testing::TestWithParam<PublicModel> {};
 
 TEST_P(Menagerie, MatchesItsGroundTruth) {
-  MJARM_TEST_FILE(archive, GetParam().archive);
+  MJARM_TEST_ARCHIVE(archive, GetParam().archive);
   MJARM_TEST_FILE(truth, GetParam().truth);
   const support::TempFolder folder;
-  unpack(archive, folder);
+  support::unpack(archive, folder.path());
   const auto model = Model::load(folder.path() / GetParam().file);
   ASSERT_TRUE(model) << model.error().what;
   expect_truth(*model, support::load_json(truth));
@@ -90,11 +82,11 @@ INSTANTIATE_TEST_SUITE_P(
                     "ground_truth/panda_nohand_menagerie.json.gz"}));
 
 TEST(MenagerieScenes, ArmsAreFoundWithoutHelp) {
-  MJARM_TEST_FILE(ur5e, "menagerie/universal_robots_ur5e.tar.xz");
-  MJARM_TEST_FILE(panda, "menagerie/franka_emika_panda.tar.xz");
+  MJARM_TEST_ARCHIVE(ur5e, "menagerie/universal_robots_ur5e.tar.xz");
+  MJARM_TEST_ARCHIVE(panda, "menagerie/franka_emika_panda.tar.xz");
   const support::TempFolder folder;
-  unpack(ur5e, folder);
-  unpack(panda, folder);
+  support::unpack(ur5e, folder.path());
+  support::unpack(panda, folder.path());
   struct Expected {
     const char* file;
     int dof;

@@ -6,6 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "tests/support/run_program.hpp"
+
 namespace mjarm::support {
 
 std::optional<std::filesystem::path> test_data_file(const std::string& name) {
@@ -60,6 +62,12 @@ std::vector<nlohmann::json> load_json_lines(const std::filesystem::path& file) {
     if (!line.empty()) lines.push_back(nlohmann::json::parse(line));
   }
   return lines;
+}
+
+void unpack(const std::filesystem::path& archive, const std::filesystem::path& folder) {
+  const ProgramResult done =
+      run_program("/bin/tar", {"xf", archive.string(), "-C", folder.string()});
+  if (done.exit_code != 0) throw std::runtime_error(done.err);
 }
 
 }  // namespace mjarm::support

@@ -29,6 +29,15 @@ namespace mjarm::support {
 /// A file of JSON lines, plain or gzipped; blank lines are left out. @throws std::exception
 [[nodiscard]] std::vector<nlohmann::json> load_json_lines(const std::filesystem::path& file);
 
+/// Unpacks an archive (`.tar.xz`) into a folder. @throws std::runtime_error
+void unpack(const std::filesystem::path& archive, const std::filesystem::path& folder);
+
+#if defined(_WIN32)
+inline constexpr bool kUnpacks = false;
+#else
+inline constexpr bool kUnpacks = true;
+#endif
+
 }  // namespace mjarm::support
 
 /// Declares `variable`, the path of the data file `name`, or skips the test; fails it where the
@@ -38,3 +47,8 @@ namespace mjarm::support {
       ::mjarm::support::test_data_file(name).value_or(std::filesystem::path());            \
   if (variable.empty()) GTEST_SKIP() << "MJARM_TEST_DATA is not set; needed for " << name; \
   ASSERT_TRUE(std::filesystem::exists(variable)) << variable
+
+/// The same for an archive; skips the test where nothing unpacks it.
+#define MJARM_TEST_ARCHIVE(variable, name)                                     \
+  if (!::mjarm::support::kUnpacks) GTEST_SKIP() << "nothing unpacks " << name; \
+  MJARM_TEST_FILE(variable, name)
