@@ -8,7 +8,6 @@
 #include "mjarm/control/actuation.hpp"
 #include "mjarm/control/robots_test.hpp"
 #include "mjarm/core/rng.hpp"
-#include "tests/support/run_program.hpp"
 #include "tests/support/test_data.hpp"
 
 namespace mjarm {
@@ -142,16 +141,10 @@ TEST(StepInverse, OneStepGivesTheAccelerationOfTheShippedArms) {
 
 TEST(StepInverse, OneStepGivesTheAccelerationOfArmsFromElsewhere) {
   const support::TempFolder folder;
-  const auto unpack = [&folder](const std::filesystem::path& archive) {
-    const auto result = support::run_program(
-        "/bin/sh",
-        {"-c", "exec tar -xJf \"$1\" -C \"$2\"", "sh", archive.string(), folder.path().string()});
-    ASSERT_EQ(result.exit_code, 0) << result.err;
-  };
-  MJARM_TEST_FILE(ur5e, "menagerie/universal_robots_ur5e.tar.xz");
-  MJARM_TEST_FILE(panda, "menagerie/franka_emika_panda.tar.xz");
-  ASSERT_NO_FATAL_FAILURE(unpack(ur5e));
-  ASSERT_NO_FATAL_FAILURE(unpack(panda));
+  MJARM_TEST_ARCHIVE(ur5e, "menagerie/universal_robots_ur5e.tar.xz");
+  MJARM_TEST_ARCHIVE(panda, "menagerie/franka_emika_panda.tar.xz");
+  support::unpack(ur5e, folder.path());
+  support::unpack(panda, folder.path());
   for (const char* file :
        {"universal_robots_ur5e/scene.xml", "franka_emika_panda/panda_nohand.xml"}) {
     SCOPED_TRACE(file);

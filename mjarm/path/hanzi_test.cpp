@@ -22,7 +22,7 @@ class Hanzi : public ::testing::Test {
  protected:
   Hanzi() {
     if (const char* before = std::getenv("XDG_DATA_HOME")) before_ = before;
-    ::setenv("XDG_DATA_HOME", folder.path().c_str(), 1);
+    ::setenv("XDG_DATA_HOME", folder.path().string().c_str(), 1);
   }
   ~Hanzi() override {
     if (before_.empty()) {
