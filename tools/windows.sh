@@ -119,7 +119,7 @@ try_windows() {
   check "wine: run" same_run run table
   check "wine: model of somebody, Chinese path" unknown_model
   check "wine: a window" opens_a_window
-  for room in core model kinematics path trajectory control; do
+  for room in core model kinematics collision path trajectory control identification teleop clone; do
     check "wine: tests of $room" room_tests "$room"
   done
   stop_wine

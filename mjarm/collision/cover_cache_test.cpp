@@ -25,7 +25,7 @@ constexpr double kCoarse = support::kSanitized ? 0.1 : 0.03;  // [m] quick to ma
 class CoverCache : public ::testing::Test {
  protected:
   CoverCache() {
-    ::setenv("XDG_CACHE_HOME", folder_.path().c_str(), 1);
+    ::setenv("XDG_CACHE_HOME", folder_.path().string().c_str(), 1);
     ::setenv("MJARM_CACHE", "on", 1);
   }
   ~CoverCache() override { ::setenv("MJARM_CACHE", "off", 1); }

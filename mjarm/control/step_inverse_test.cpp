@@ -8,6 +8,7 @@
 #include "mjarm/control/actuation.hpp"
 #include "mjarm/control/robots_test.hpp"
 #include "mjarm/core/rng.hpp"
+#include "tests/support/temp_folder.hpp"
 #include "tests/support/test_data.hpp"
 
 namespace mjarm {
