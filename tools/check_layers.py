@@ -18,7 +18,7 @@ ALLOWED = {
     "planning": "core model kinematics collision path",
     "trajectory": "core model kinematics path",
     "control": "core model kinematics trajectory",
-    "identification": "core model kinematics trajectory control",
+    "identification": "core model kinematics path trajectory control",
     "sim": "core model control",
     "teleop": "core model kinematics collision trajectory control sim",
     "render": "core model sim",

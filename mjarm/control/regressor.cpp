@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 
 #include "mjarm/core/linear_algebra.hpp"
 #include "mjarm/core/rng.hpp"
@@ -54,6 +55,16 @@ Wrenches wrenches(const Eigen::Matrix3d& R, const FrameMotion& motion) {
 }
 
 }  // namespace
+
+std::string parameter_name(int i, const Arm& arm) {
+  // As Inertial::vector() has them.
+  constexpr std::array<const char*, kInertialSize> kNames{"m",   "mx",  "my",  "mz",  "Ixx",
+                                                          "Iyy", "Izz", "Ixy", "Ixz", "Iyz"};
+  const int links = kInertialSize * arm.dof();
+  if (i >= links) return "rotor " + arm.joints[static_cast<std::size_t>(i - links)].name;
+  return std::string(kNames[static_cast<std::size_t>(i % kInertialSize)]) + " " +
+         arm.joints[static_cast<std::size_t>(i / kInertialSize)].name;
+}
 
 Regressor regressor_at(const Arm& arm, const Vec3& gravity, const JointState& state) {
   const int n = arm.dof();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "mjarm/core/joint_state.hpp"
@@ -14,6 +15,9 @@ inline constexpr int kInertialSize = 10;
 
 /// Parameters of an arm: Inertial::vector() of each link, then the rotor inertia of each joint.
 [[nodiscard]] inline int parameter_count(const Arm& arm) { return (kInertialSize + 1) * arm.dof(); }
+
+/// Name of parameter `i`, < parameter_count(): "mx wrist_1_joint", "rotor wrist_1_joint".
+[[nodiscard]] std::string parameter_name(int i, const Arm& arm);
 
 /// Joint torques of an arm as linear in the inertial parameters of its links and of what hangs at
 /// its tool, by the recursive Newton-Euler equations (W. Khalil, E. Dombre, Modeling,

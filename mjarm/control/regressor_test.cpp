@@ -64,6 +64,13 @@ TEST(Regressor, PayloadIsThatOfMujoco) {
   }
 }
 
+TEST(Regressor, ParametersHaveTheNamesOfTheirJoints) {
+  const Arm arm = load_robot("ur5e").value().arm;
+  EXPECT_EQ(parameter_name(0, arm), "m " + arm.joints[0].name);
+  EXPECT_EQ(parameter_name(kInertialSize + 9, arm), "Iyz " + arm.joints[1].name);
+  EXPECT_EQ(parameter_name(parameter_count(arm) - 1, arm), "rotor " + arm.joints[5].name);
+}
+
 TEST(Regressor, BaseParametersSayAllThatTorquesTell) {
   Rng rng(5);
   const Robot robot = load_robot("ur5e").value();

@@ -170,7 +170,7 @@ Eigen::MatrixXd Equations::clustered(const Eigen::MatrixXd& W,
   return out * all / std::max(1.0, all - static_cast<double>(W.cols()));
 }
 
-Solution Equations::solve() const {
+Result<Solution> Equations::solve(const StopCheck& stop) const {
   const auto count = static_cast<Eigen::Index>(rows_.size());
   Eigen::MatrixXd W(count, unknowns_.size());
   for (Eigen::Index i = 0; i < count; ++i) W.row(i) = columns_[static_cast<std::size_t>(i)];
@@ -188,6 +188,7 @@ Solution Equations::solve() const {
     };
     double best = 0, least = -1;
     for (double delay = kEarliest; delay <= kLatest; delay += 0.5) {
+      if (is_stopped(stop)) return fail(stopped());
       const double squares = unexplained(delay, out.x);
       if (least < 0 || squares < least) {
         least = squares;

@@ -51,7 +51,8 @@ class Equations {
   [[nodiscard]] bool moves() const;
   /// (10,) The payload has these parameters beside the unknown ones.
   void set_point_inertia(const Eigen::VectorXd& parameters) { point_inertia_ = parameters; }
-  [[nodiscard]] Solution solve() const;
+  /// @return stopped() where `stop` ended the work.
+  [[nodiscard]] Result<Solution> solve(const StopCheck& stop) const;
 
  private:
   struct Row {

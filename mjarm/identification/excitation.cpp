@@ -157,4 +157,23 @@ Result<Trajectory> excitation(const Model& model, const Arm& arm, const JointVec
   return fail(Errc::impossible, text(msg::identification_no_free_motion, tried));
 }
 
+Result<Trajectory> free_excitation(const Model& model, const Arm& arm, const JointVec& q_start,
+                                   const ClearanceCheck& clearance,
+                                   const ExcitationOptions& options) {
+  constexpr double kLook = 0.01;  // [s] from look to look
+  if (!clearance) return excitation(model, arm, q_start, options);
+  ExcitationOptions free = options;
+  free.valid = [&](std::span<const double> q) {
+    return (!options.valid || options.valid(q)) && clearance(q).distance > kExcitationClearance;
+  };
+  Result<Trajectory> motion = excitation(model, arm, q_start, free);
+  if (!motion) return motion;
+  for (double t = 0; t < options.seconds; t += kLook) {
+    const JointVec q = motion->at(t).q;
+    if (clearance.is_free(as_span(q))) continue;
+    return fail(Errc::impossible, text(msg::identification_touches, t));
+  }
+  return motion;
+}
+
 }  // namespace mjarm

@@ -8,6 +8,7 @@
 #include "mjarm/core/result.hpp"
 #include "mjarm/model/arm.hpp"
 #include "mjarm/model/model.hpp"
+#include "mjarm/path/clearance.hpp"
 #include "mjarm/trajectory/trajectory.hpp"
 
 namespace mjarm {
@@ -33,5 +34,15 @@ inline constexpr double kMostExcitation = 120;  ///< [s]
 [[nodiscard]] Result<Trajectory> excitation(const Model& model, const Arm& arm,
                                             const JointVec& q_start,
                                             const ExcitationOptions& options = {});
+
+/// [m] That free_excitation() keeps from everything.
+inline constexpr double kExcitationClearance = 0.01;
+
+/// The same on which nothing is touched, by what `clearance` measures; empty: it looks at nothing.
+/// @return impossible also where something overlaps between the moments that were looked at.
+[[nodiscard]] Result<Trajectory> free_excitation(const Model& model, const Arm& arm,
+                                                 const JointVec& q_start,
+                                                 const ClearanceCheck& clearance,
+                                                 const ExcitationOptions& options = {});
 
 }  // namespace mjarm

@@ -49,5 +49,29 @@ TEST(Excitation, StaysWhereItMayAndSaysWhereItCannot) {
   EXPECT_EQ(excitation(robot.model, robot.arm, home, {.seconds = 1}).error().code, Errc::bad_input);
 }
 
+TEST(Excitation, ThatIsFreeKeepsAwayFromThings) {
+  const Robot robot = load_robot("ur5e").value();
+  const JointVec home = robot.arm.home;
+  const ExcitationOptions options{.seconds = 5, .tries = 3};
+  // Something stands 0.3 rad from home on one side of the first joint.
+  const ClearanceCheck wall = [&](std::span<const double> q) {
+    return Clearance{.distance = home[0] + 0.3 - q[0], .pair = {}};
+  };
+  const Trajectory motion = free_excitation(robot.model, robot.arm, home, wall, options).value();
+  for (double t = 0; t < 5; t += 0.01) EXPECT_LT(motion.at(t).q[0], home[0] + 0.3);
+  const Trajectory anywhere = free_excitation(robot.model, robot.arm, home, {}, options).value();
+  EXPECT_EQ(anywhere.at(2).q, excitation(robot.model, robot.arm, home, options).value().at(2).q);
+  const ClearanceCheck never = [](std::span<const double>) {
+    return Clearance{.distance = 0, .pair = {}};
+  };
+  EXPECT_EQ(free_excitation(robot.model, robot.arm, home, never, options).error().code,
+            Errc::impossible);
+  // Far away as it is told, and yet in the way.
+  const ClearanceCheck odd([](std::span<const double>) { return Clearance{}; },
+                           [](std::span<const double>) { return false; });
+  EXPECT_NE(free_excitation(robot.model, robot.arm, home, odd, options).error().what.find("0.00 s"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace mjarm

@@ -1,5 +1,7 @@
 #include "mjarm/identification/identify.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -82,6 +84,14 @@ Identification told(const Robot& robot, const Unknowns& unknowns, const Solution
 
 }  // namespace
 
+std::string describe(const Estimate& estimate) {
+  if (!estimate.known) return "-";
+  // Two digits of the error say all there is.
+  const double digits = std::ceil(1 - std::log10(std::max(estimate.error, 1e-12)));
+  const int decimals = static_cast<int>(std::clamp(digits, 0.0, 6.0));
+  return fmt::format("{:.{}f} +- {:.{}f}", estimate.value, decimals, estimate.error, decimals);
+}
+
 Result<Identification> identify(const Robot& robot, const IdentifyTask& task) {
   constexpr double kSame = 0.01;  // of a time step
   if (task.empty != nullptr && std::abs(task.empty->timestep / task.log->timestep - 1) > kSame) {
@@ -94,20 +104,21 @@ Result<Identification> identify(const Robot& robot, const IdentifyTask& task) {
   Equations equations(robot, gravity, unknowns);
   for (const JointLog* log : {task.log, task.empty}) {
     if (log == nullptr) continue;
-    const Result<detail::SmoothLog> smoothed = detail::smooth(*log);
+    const Result<detail::SmoothLog> smoothed = detail::smooth(*log, task.stop);
     if (!smoothed) return fail(smoothed.error());
     equations.add(*smoothed, log == task.log);
   }
   if (!equations.moves()) {
     return fail(Errc::bad_input, text(msg::identification_no_motion, Equations::kSlowest));
   }
-  Solution solution = equations.solve();
+  Result<Solution> solution = equations.solve(task.stop);
   constexpr int kRounds = 2;
-  for (int i = 0; i < kRounds && unknowns.has_payload; ++i) {
-    equations.set_point_inertia(second_degree(solution, unknowns.payload()));
-    solution = equations.solve();
+  for (int i = 0; i < kRounds && unknowns.has_payload && solution; ++i) {
+    equations.set_point_inertia(second_degree(*solution, unknowns.payload()));
+    solution = equations.solve(task.stop);
   }
-  return told(robot, unknowns, solution);
+  if (!solution) return fail(solution.error());
+  return told(robot, unknowns, *solution);
 }
 
 }  // namespace mjarm

@@ -3,10 +3,12 @@
 #include <Eigen/Core>
 #include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "mjarm/control/regressor.hpp"
 #include "mjarm/core/result.hpp"
+#include "mjarm/core/stop.hpp"
 #include "mjarm/identification/joint_log.hpp"
 #include "mjarm/model/payload.hpp"
 #include "mjarm/model/robot.hpp"
@@ -19,6 +21,8 @@ struct Estimate {
   double error = 0;   ///< standard error, of the same unit
   bool known = true;  ///< the log tells it; else `value` is the model's and `error` infinite
 };
+/// "1.500 +- 0.002", as many digits as the error leaves; "-" for what is not known.
+[[nodiscard]] std::string describe(const Estimate& estimate);
 
 /// How one joint resists beside what its links need.
 struct JointEstimate {
@@ -36,6 +40,8 @@ struct PayloadEstimate {
   Estimate mass;                   ///< [kg]
   std::array<Estimate, 3> center;  ///< [m] centre of mass in the tool's frame
 
+  /// Whether there is more than nothing: by three standard errors.
+  [[nodiscard]] bool is_told() const { return mass.known && mass.value > 3 * mass.error; }
   [[nodiscard]] Payload payload() const {
     return {mass.value, {center[0].value, center[1].value, center[2].value}};
   }
@@ -48,6 +54,7 @@ struct IdentifyTask {
       nullptr;          ///< of the arm without the payload of `log`; null: there is none
   bool payload = true;  ///< of `log`, beside what the model has at the tool
   bool links = false;   ///< the links are not as in the model; goes without saying with `empty`
+  StopCheck stop = {};  ///< ends the work
 };
 
 /// What torques and positions tell of an arm.
@@ -72,7 +79,8 @@ struct Identification {
 ///
 /// A payload cannot be told from an error of the last link: with one log the links are taken to be
 /// as in the model, with two, one of them of the empty arm, nothing is.
-/// @return bad_input for a log that is too short, too coarse, or in which nothing moves.
+/// @return bad_input for a log that is too short, too coarse, or in which nothing moves; stopped()
+///         where `stop` ended the work.
 [[nodiscard]] Result<Identification> identify(const Robot& robot, const IdentifyTask& task);
 
 }  // namespace mjarm

@@ -131,6 +131,28 @@ TEST(Identify, TheDelayOfTorquesIsFound) {
   EXPECT_NEAR(told.payload->mass.value, 0, 0.05);
 }
 
+TEST(Identify, EstimatesAreWrittenAsFarAsTheirErrorsLeave) {
+  EXPECT_EQ(describe({1.5, 0.002}), "1.5000 +- 0.0020");
+  EXPECT_EQ(describe({123.4, 20}), "123 +- 20");
+  EXPECT_EQ(describe({1, 1, false}), "-");
+  EXPECT_TRUE(PayloadEstimate({.mass = {1.5, 0.4}, .center = {}}).is_told());
+  EXPECT_FALSE(PayloadEstimate({.mass = {1.5, 0.6}, .center = {}}).is_told());
+  EXPECT_FALSE(PayloadEstimate({.mass = {1.5, 0, false}, .center = {}}).is_told());
+}
+
+TEST(Identify, IsStopped) {
+  const Case one = case_of("ur5e", 5);
+  const JointLog log = log_of(one.known, one.known.model, one.motion);
+  int looks = 0;
+  const auto after = [&](int count) {
+    looks = 0;
+    return identify(one.known, {.log = &log, .stop = [&, count] { return ++looks > count; }});
+  };
+  EXPECT_TRUE(after(1'000'000).has_value());
+  const int all = looks;
+  for (const int count : {0, 100, all - 1}) EXPECT_EQ(after(count).error().what, stopped().what);
+}
+
 TEST(Identify, RefusesWhatTellsNothing) {
   const Robot robot = load_robot("ur5e").value();
   JointLog log{0.002, {}, {}};

@@ -31,7 +31,7 @@ Eigen::MatrixXd smoothing_weights(int half, double timestep) {
 
 }  // namespace
 
-Result<SmoothLog> smooth(const JointLog& log) {
+Result<SmoothLog> smooth(const JointLog& log, const StopCheck& stop) {
   const std::size_t rows = log.q.size();
   const double length = static_cast<double>(rows) * log.timestep;
   if (rows < 2 || length < kShortest) {
@@ -47,6 +47,7 @@ Result<SmoothLog> smooth(const JointLog& log) {
   const Eigen::Index n = log.q.front().size(), count = weights.cols();
   Eigen::MatrixXd q(n, count), torque(n, count);
   for (std::size_t i = 0; i + static_cast<std::size_t>(count) <= rows; ++i) {
+    if (is_stopped(stop)) return fail(stopped());
     for (Eigen::Index k = 0; k < count; ++k) {
       q.col(k) = log.q[i + static_cast<std::size_t>(k)];
       torque.col(k) = log.torque[i + static_cast<std::size_t>(k)];

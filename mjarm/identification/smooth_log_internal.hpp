@@ -4,6 +4,7 @@
 
 #include "mjarm/core/joint_state.hpp"
 #include "mjarm/core/result.hpp"
+#include "mjarm/core/stop.hpp"
 #include "mjarm/identification/joint_log.hpp"
 
 namespace mjarm::detail {
@@ -18,7 +19,7 @@ struct SmoothLog {
   std::vector<JointVec> torque;   ///< as many
 };
 
-/// @return bad_input for a log that is too short or too coarse in time.
-[[nodiscard]] Result<SmoothLog> smooth(const JointLog& log);
+/// @return bad_input for a log that is too short or too coarse in time; stopped().
+[[nodiscard]] Result<SmoothLog> smooth(const JointLog& log, const StopCheck& stop = {});
 
 }  // namespace mjarm::detail

@@ -92,16 +92,12 @@ Attempt StepPlanner::rest(std::size_t i, const Stand& at, double seconds) const 
 
 /// To and fro about where the arm stands, free of contact all along.
 Attempt StepPlanner::excite(std::size_t i, const Stand& at) const {
-  constexpr double kClear = 0.01;  // [m]
-  constexpr double kLook = 0.01;   // [s] from look to look
+  constexpr double kLook = 0.01;  // [s] from look to look
   const Step& step = steps_[i];
   const ToolPtr with = tool(i, at);
-  const ClearanceCheck& clearance = with->judge.clearance();
-  ExcitationOptions options{.seconds = step.seconds, .seed = step.seed};
-  if (clearance) {
-    options.valid = [&](std::span<const double> q) { return clearance(q).distance > kClear; };
-  }
-  Result<Trajectory> motion = excitation(places_.model(), with->arm, at.q, options);
+  Result<Trajectory> motion =
+      free_excitation(places_.model(), with->arm, at.q, with->judge.clearance(),
+                      {.seconds = step.seconds, .seed = step.seed});
   if (!motion) return failed(i, at, {i, "collision", motion.error().what});
   PlannedMove move = begun(i, at.scene);
   std::vector<JointVec> way;

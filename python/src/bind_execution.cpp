@@ -49,13 +49,17 @@ std::vector<PlannedMove> moves_of(const BoundRobot& robot, nb::handle motion) {
 }
 
 std::unique_ptr<BoundRun> simulate(const BoundRobot& robot, nb::handle motion,
-                                   const std::string& control, double rest, double tolerance) {
+                                   const std::string& control, double rest, double tolerance,
+                                   const std::optional<Payload>& payload) {
   if (!(rest >= 0 && rest <= kMostRest)) refuse(msg::python_rest, kMostRest);
   if (!(tolerance > 0)) refuse(msg::python_positive, "tolerance");
   program::LoadedProgram loaded{.file = {}, .program = {}, .robot = robot.robot, .plan = {}};
   loaded.program.name = robot.arm().name;
   loaded.program.control = value_of(control_mode(control));
   loaded.plan.moves = moves_of(robot, motion);
+  if (payload) {
+    for (PlannedMove& move : loaded.plan.moves) move.payload = *payload;
+  }
   loaded.plan.arms = {robot.arm()};
   loaded.plan.q_start = loaded.plan.moves.front().trajectory.at(0).q;
   return value_of(interruptible([&](const StopCheck& stop) {
@@ -148,6 +152,8 @@ rest : float, optional
     How long the arm is held at the end [s].
 tolerance : float, optional
     How far the tool may be from its curve and its goal [m] for the run to be `ok`.
+payload : Payload, optional
+    Hangs at the tool, and the controller knows it.
 
 Returns
 -------
@@ -222,8 +228,10 @@ void bind_execution(nb::module_& m) {
   robot.def("simulate", &simulate, nb::arg("motion"), nb::kw_only(),
             nb::arg("control") = "computed_torque", nb::arg("rest") = kRestAtEnd,
             nb::arg("tolerance") = BoundRun::Choice().tolerance,
+            nb::arg("payload").none() = nb::none(),
             nb::sig("def simulate(self, motion: Motion | Sequence[Motion], *, control: str = "
-                    "'computed_torque', rest: float = 0.5, tolerance: float = 0.0005) -> Run"),
+                    "'computed_torque', rest: float = 0.5, tolerance: float = 0.0005, payload: "
+                    "Payload | None = None) -> Run"),
             kSimulate);
 }
 

@@ -4,8 +4,11 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <cmath>
+
 #include "mjarm/model/find_arm.hpp"
 #include "mjarm/model/joint_values.hpp"
+#include "mjarm/model/payload.hpp"
 #include "python/src/bindings.hpp"
 #include "python/src/convert.hpp"
 #include "python/src/robot.hpp"
@@ -104,10 +107,41 @@ void bind_limits(nb::module_& m) {
                    "[N m or N]");
 }
 
+void bind_payload(nb::module_& m) {
+  nb::class_<Payload>(m, "Payload",
+                      R"(What hangs at the tool beside what the model has there, as a point mass.
+
+Parameters
+----------
+mass : float
+    [kg], 0 or more.
+center : array_like, shape (3,), optional
+    Centre of mass in the frame of the tool [m].
+)")
+      .def(
+          "__init__",
+          [](Payload* self, double mass, nb::handle center) {
+            if (!(mass >= 0) || !std::isfinite(mass)) refuse(msg::python_payload);
+            new (self) Payload{mass, vector3(center, "center")};
+          },
+          nb::arg("mass"), nb::arg("center") = nb::make_tuple(0, 0, 0),
+          nb::sig("def __init__(self, mass: float, center: ArrayLike = (0, 0, 0)) -> None"))
+      .def_prop_ro(
+          "mass", [](const Payload& p) { return p.mass; }, "[kg]")
+      .def_prop_ro(
+          "center", [](const Payload& p) { return array(p.center); },
+          nb::sig("def center(self) -> Array"), "In the frame of the tool [m], (3,).")
+      .def("__repr__", [](const Payload& p) {
+        return nb::str("<mjarm.Payload: {:.4f} kg at ({:.4f}, {:.4f}, {:.4f}) m>")
+            .format(p.mass, p.center.x(), p.center.y(), p.center.z());
+      });
+}
+
 }  // namespace
 
 void bind_model(nb::module_& m) {
   bind_limits(m);
+  bind_payload(m);
   m.def(
       "shipped_models",
       [] {

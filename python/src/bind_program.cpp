@@ -61,9 +61,12 @@ BoundProgram parse_program(const std::string& text, const fs::path& folder, bool
   return with_robot(file.string(), std::move(program), load_options(allow_outside, packages));
 }
 
-LoadedProgram think_through(const BoundProgram& self) {
+LoadedProgram think_through(const BoundProgram& self, const std::optional<Payload>& payload) {
+  Program program = self.program;
+  if (payload) program.settings.payload = payload;
   return value_of(interruptible([&](const StopCheck& stop) {
-    return program::plan_loaded(self.file, self.program, self.robot, stop, session::see_scene);
+    return program::plan_loaded(self.file, std::move(program), self.robot, stop,
+                                session::see_scene);
   }));
 }
 
@@ -161,6 +164,8 @@ rest, tolerance : float, optional
     As Robot.simulate() has them.
 max_duration : float, optional
     A program that takes longer is refused [s].
+payload : Payload, optional
+    Hangs at the tool from the beginning, in place of that of the program.
 
 Raises
 ------
@@ -196,20 +201,20 @@ void bind_program(nb::module_& m) {
           "robot", [](const BoundProgram& p) { return BoundRobot(p.robot); },
           "The robot it is for, in its scene.")
       .def(
-          "check", &think_through,
+          "check", &think_through, nb::kw_only(), nb::arg("payload").none() = nb::none(),
           "Plans all of it, and finds all that cannot be done. Where the program looks, the camera "
           "is drawn.")
       .def(
           "run",
           [](const BoundProgram& p, const std::optional<std::string>& control, double rest,
-             double tolerance, double max_duration) {
-            return execute(think_through(p), control, rest, tolerance, max_duration);
+             double tolerance, double max_duration, const std::optional<Payload>& payload) {
+            return execute(think_through(p, payload), control, rest, tolerance, max_duration);
           },
           nb::kw_only(), nb::arg("control") = nb::none(), nb::arg("rest") = kRestAtEnd,
           nb::arg("tolerance") = BoundRun::Choice().tolerance, nb::arg("max_duration") = 3600.0,
-          kRunProgram)
+          nb::arg("payload").none() = nb::none(), kRunProgram)
       .def(
-          "urscript", [](const BoundProgram& p) { return urscript(sound(think_through(p))); },
+          "urscript", [](const BoundProgram& p) { return urscript(sound(think_through(p, {}))); },
           "As a script for a controller of Universal Robots.")
       .def("__len__", [](const BoundProgram& p) { return p.program.instructions.size(); })
       .def("__repr__", [](const BoundProgram& p) {

@@ -14,6 +14,7 @@ void bind_region(nanobind::module_& m);
 void bind_planning(nanobind::module_& m);
 void bind_trajectory(nanobind::module_& m);
 void bind_control(nanobind::module_& m);
+void bind_identification(nanobind::module_& m);
 void bind_execution(nanobind::module_& m);
 void bind_program(nanobind::module_& m);
 void bind_pick(nanobind::module_& m);

@@ -32,6 +32,7 @@ NB_MODULE(_core, m) {
   python::bind_planning(m);
   python::bind_trajectory(m);
   python::bind_control(m);
+  python::bind_identification(m);
   python::bind_execution(m);
   python::bind_program(m);
   python::bind_pick(m);

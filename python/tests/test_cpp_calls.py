@@ -8,7 +8,7 @@ import pytest
 import mjarm
 
 HERE = pathlib.Path(__file__).parent
-ROOMS = ("kinematics", "path", "planning", "trajectory", "execution", "program", "perception")
+ROOMS = ("kinematics", "path", "planning", "trajectory", "identification", "execution", "program", "perception")
 EVERYWHERE = {"name", "describe", "word"}  # of enumerations and failures: attributes and texts of exceptions
 
 

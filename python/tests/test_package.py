@@ -138,7 +138,8 @@ def test_nothing_a_caller_gives_crashes_it(tmp_path, monkeypatch):
     things = [robot, motion, frame, mjarm.Pose(), robot.limits, robot.controller(), robot.tracker(), robot.simulate(motion, rest=0),
               robot.line(robot.fk(robot.home), mjarm.Pose([9, 9, 9])), mjarm.Region(mjarm.Pose()), mjarm.Policy.load("reach"),
               mjarm.Program.parse("robot: ur5e\nprogram:\n  - wait: 1ms\n"), mjarm.Curve.line(mjarm.Pose(), mjarm.Pose([1, 0, 0])),
-              robot.plan(robot.home, robot.home + 0.05), ReachBatch()]
+              robot.plan(robot.home, robot.home + 0.05), ReachBatch(), mjarm.Payload(1.0),
+              mjarm.JointLog(0.002, np.zeros((2000, 6)), np.zeros((2000, 6)))]
     odd = [None, 0, -1, 1e308, float("nan"), "", "x" * 1000, b"\0", [], [[]], [1, [2]], {}, (), object(), *things, mjarm.Pose,
            lambda *a: 1, np.zeros((0, 6)), np.zeros((3, 6)), np.zeros((2, 4, 4)), np.eye(4), np.eye(4, dtype=np.float32),
            np.full(6, 1e300), np.array(["a"] * 6), np.zeros(6)[::-1], np.zeros((6, 12))[:, ::2], np.zeros(7), range(6),

@@ -53,7 +53,8 @@ Result<int> run(const Options& options) {
   const Result<Identification> found = identify(*robot, {.log = &*log,
                                                          .empty = empty ? &*empty : nullptr,
                                                          .payload = !options.links,
-                                                         .links = options.links});
+                                                         .links = options.links,
+                                                         .stop = interrupted});
   if (!found) return fail(found.error());
   tell_poor(*found, robot->arm);
   print_lines(options.json ? identification_json(*found, robot->arm)

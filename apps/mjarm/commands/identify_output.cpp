@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <string_view>
 #include <vector>
 
@@ -15,40 +12,15 @@
 namespace mjarm::app {
 namespace {
 
-constexpr std::array<const char*, kInertialSize> kParameterNames{"m",   "mx",  "my",  "mz",  "Ixx",
-                                                                 "Iyy", "Izz", "Ixy", "Ixz", "Iyz"};
-
-std::string with_error(const Estimate& estimate) {
-  if (!estimate.known) return "-";
-  // Two digits of the error say all there is.
-  const double digits = std::ceil(1 - std::log10(std::max(estimate.error, 1e-12)));
-  const int decimals = static_cast<int>(std::clamp(digits, 0.0, 6.0));
-  return fmt::format("{:.{}f} +- {:.{}f}", estimate.value, decimals, estimate.error, decimals);
-}
-
-/// "mx wrist_1_joint"
-std::string parameter_name(int column, const Arm& arm) {
-  const int links = kInertialSize * arm.dof();
-  if (column >= links) return "rotor " + arm.joints[static_cast<std::size_t>(column - links)].name;
-  return std::string(kParameterNames[static_cast<std::size_t>(column % kInertialSize)]) + " " +
-         arm.joints[static_cast<std::size_t>(column / kInertialSize)].name;
-}
-
-/// Whether there is more than nothing, for three standard errors.
-bool is_told(const PayloadEstimate& payload) {
-  constexpr double kErrors = 3;
-  return payload.mass.known && payload.mass.value > kErrors * payload.mass.error;
-}
-
 std::string payload_text(const PayloadEstimate& payload, const Arm& arm) {
-  if (!is_told(payload)) {
-    return text(msg::identify_no_payload, with_error(payload.mass)) + "\n";
+  if (!payload.is_told()) {
+    return text(msg::identify_no_payload, describe(payload.mass)) + "\n";
   }
   std::vector<std::vector<std::string>> rows{
-      {text(msg::identify_mass), with_error(payload.mass), "kg"}};
+      {text(msg::identify_mass), describe(payload.mass), "kg"}};
   for (std::size_t i = 0; i < 3; ++i) {
     rows.push_back({text(msg::identify_center, std::string_view("xyz").substr(i, 1)),
-                    with_error(payload.center[i]), "m"});
+                    describe(payload.center[i]), "m"});
   }
   const Payload found = payload.payload();
   const std::string words = fmt::format("{:.4f},{:.4f},{:.4f},{:.4f}", found.mass, found.center.x(),
@@ -64,9 +36,8 @@ std::string joints_text(const Identification& found, const Arm& arm) {
        text(msg::identify_head_rms)}};
   for (std::size_t j = 0; j < found.joints.size(); ++j) {
     const JointEstimate& one = found.joints[j];
-    rows.push_back({arm.joints[j].name, with_error(one.friction), with_error(one.viscous),
-                    with_error(one.offset), with_error(one.inertia),
-                    fmt::format("{:.4f}", one.rms)});
+    rows.push_back({arm.joints[j].name, describe(one.friction), describe(one.viscous),
+                    describe(one.offset), describe(one.inertia), fmt::format("{:.4f}", one.rms)});
   }
   return text(msg::identify_joints) + "\n" + aligned(rows);
 }
@@ -75,7 +46,7 @@ std::string links_text(const Identification& found, const Arm& arm) {
   std::vector<std::vector<std::string>> rows{
       {"", text(msg::identify_head_estimate), text(msg::identify_head_model)}};
   for (std::size_t i = 0; i < found.links.size(); ++i) {
-    rows.push_back({parameter_name(found.base.kept[i], arm), with_error(found.links[i]),
+    rows.push_back({parameter_name(found.base.kept[i], arm), describe(found.links[i]),
                     fmt::format("{:.4f}", found.model_links[static_cast<Eigen::Index>(i)])});
   }
   return text(msg::identify_links) + "\n" + aligned(rows);
@@ -117,7 +88,7 @@ std::string identification_json(const Identification& found, const Arm& arm) {
   JsonDoc doc{{"delay", found.delay}, {"equations", found.rows}};
   if (found.payload) {
     const PayloadEstimate& payload = *found.payload;
-    doc.set("payload", JsonDoc{{"told", is_told(payload)},
+    doc.set("payload", JsonDoc{{"told", payload.is_told()},
                                {"frame", arm.tip},
                                {"mass", json_of(payload.mass)},
                                {"com", std::vector<JsonDoc>{json_of(payload.center[0]),
