@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -71,8 +72,8 @@ class GraspingHand {
 
  private:
   // [s] Ends of what it does one after the other.
-  static constexpr double kAtRandom = 12, kAbove = 18, kDown = 21, kClosed = 22.5, kLifted = 23.5,
-                          kCarried = 32;
+  static constexpr double kAtRandom = 10, kAbove = 14, kDown = 17, kClosed = 18, kLifted = 19,
+                          kCarried = 30;
 
   /// From above, across a side of the body.
   [[nodiscard]] TeleopInput fetch(const Sim& sim, double t) const {
@@ -156,22 +157,30 @@ struct DriveResult {
   std::vector<double> qpos;  ///< at the end
 };
 
-/// Drives a robot at random for `seconds` of simulated time, or until something touches.
+/// Drives a robot at random for `seconds` of simulated time, or until something touches. What fell
+/// from the table is put back every now and then.
 inline DriveResult drive(const Robot& robot, const TeleopOptions& options, std::uint64_t seed,
                          double seconds) {
+  constexpr double kAgain = 60;  // [s]
   Sim sim(robot.model);
-  sim.reset_home();
-  sim.place(robot.arm, as_span(robot.arm.home));
   Result<Teleop> teleop = Teleop::create(robot, options);
   if (!teleop) throw std::runtime_error(teleop.error().what);
-  teleop->begin(sim);
-  GraspingHand hand(robot, seed);
+  std::optional<GraspingHand> hand;
   const ForbiddenContacts forbidden(robot);
   DriveResult out;
   int near = 0, all = 0;
-  Eigen::Vector3d p = sim.tool(robot.arm).p;
-  while (sim.time() < seconds && out.contact.empty()) {
-    if (auto done = teleop->advance(sim, hand.at(sim)); !done) {
+  Eigen::Vector3d p;
+  double before = 0;  // [s] up to the last time things were put back
+  while (before + sim.time() < seconds && out.contact.empty()) {
+    if (!hand || sim.time() >= kAgain) {
+      before += sim.time();
+      sim.reset_home();
+      sim.place(robot.arm, as_span(robot.arm.home));
+      teleop->begin(sim);
+      hand.emplace(robot, seed + 1000 * static_cast<std::uint64_t>(before));
+      p = sim.tool(robot.arm).p;
+    }
+    if (auto done = teleop->advance(sim, hand->at(sim)); !done) {
       throw std::runtime_error(done.error().what);
     }
     out.contact = forbidden.first(sim);
@@ -182,7 +191,7 @@ inline DriveResult drive(const Robot& robot, const TeleopOptions& options, std::
     const Eigen::Vector3d now = sim.tool(robot.arm).p;
     out.way += (now - std::exchange(p, now)).norm();
   }
-  out.time = sim.time();
+  out.time = before + sim.time();
   out.slowed = static_cast<double>(near) / all;
   out.qpos.assign(sim.qpos().begin(), sim.qpos().end());
   return out;
