@@ -21,22 +21,27 @@ RegionRoom smaller(const RegionRoom& a, const RegionRoom& b) {
   return {std::min(a.place, b.place), std::min(a.turn, b.turn)};
 }
 
-/// A region on one edge.
+/// A region on one edge, part by part.
 struct Watched {
   const RegionProof* proof;  // null: none
   EdgeMotion motion = {};
+  SeenTool from = {}, to = {};  // the ends of the part
 
-  Watched(const RegionProof* region, std::span<const double> q0, std::span<const double> q1)
+  Watched(const RegionProof* region, std::span<const double> q0, std::span<const double> q1,
+          const Pose& X_WT)
       : proof(region) {
-    if (region != nullptr) motion = region->motion(q0, q1);
+    if (region == nullptr) return;
+    motion = region->motion(q0, q1);
+    from = region->see(X_WT);
   }
-  /// @param part  of the edge, between two poses of the tool.
-  [[nodiscard]] RegionRoom room(const Pose& X_WT0, const Pose& X_WT1, double part) const {
+  /// @param X_WT  at the end of the part.
+  /// @param part  share of the edge.
+  [[nodiscard]] RegionRoom room(const Pose& X_WT, double part) {
     if (proof == nullptr) return {};
-    const double turn = part * motion.turn;
-    return proof->between(proof->pose_of(X_WT0), proof->pose_of(X_WT1),
-                          part * part * motion.place / 8, turn * turn / 8);
+    to = proof->see(X_WT);
+    return proof->room(from, to, motion, part);
   }
+  void go_on() { from = to; }
 };
 
 }  // namespace
@@ -96,26 +101,27 @@ std::optional<double> PathKeeper::step(std::span<const double> from, std::span<c
 }
 
 PathKeeper::Edge PathKeeper::look(std::span<const double> q0, std::span<const double> q1) const {
-  const Watched watched[] = {{tilt_ ? &*tilt_ : nullptr, q0, q1},
-                             {within_ ? &*within_ : nullptr, q0, q1}};
+  const Pose start = fk(chain_, q0);
+  Watched leaning(tilt_ ? &*tilt_ : nullptr, q0, q1, start);
+  Watched within(within_ ? &*within_ : nullptr, q0, q1, start);
   const double whole = distance(q0, q1);
   std::array<double, kMaxDof> row;
   const std::span<double> q(row.data(), q0.size());
   Edge out;
-  Pose from = fk(chain_, q0);
   double done = 0, part = 1;
   // From the left, each part as wide as it can be proved, at most twice the one before.
   for (int parts = 0; done < 1; ++parts) {
     const double end = std::min(1.0, done + part);
     detail::between(q0, q1, end, q);
     const Pose to = fk(chain_, end < 1 ? std::span<const double>(q) : q1);
-    const RegionRoom tilt = watched[0].room(from, to, end - done);
-    const RegionRoom room = watched[1].room(from, to, end - done);
+    const RegionRoom tilt = leaning.room(to, end - done);
+    const RegionRoom room = within.room(to, end - done);
     if (tilt.within(kRounding) && room.within(kRounding)) {
       out.tilt_room = std::min(out.tilt_room, tilt.turn);
       out.room = smaller(out.room, room);
       done = end;
-      from = to;
+      leaning.go_on();
+      within.go_on();
       part *= 2;
     } else if (whole * (end - done) > kFinestStep && parts < kMaxParts) {
       part = 0.5 * (end - done);

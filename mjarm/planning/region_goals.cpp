@@ -20,6 +20,7 @@ constexpr double kPullPays = 1e-3;     // share of it that a step has to gain
 constexpr double kSamePosture = 1e-6;  // [rad or m]
 
 bool is_point(const TaskRegion& region) {
+  if (region.mechanism && region.mechanism->min < region.mechanism->max) return false;
   const bool is_turn = region.lean > 0 && region.turn_min.head<2>() != region.turn_max.head<2>();
   return region.place_min == region.place_max && !is_turn &&
          region.turn_min[2] == region.turn_max[2];

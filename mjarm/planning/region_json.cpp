@@ -11,6 +11,7 @@ namespace mjarm::detail {
 namespace {
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+constexpr const char *kHinge = "hinge", *kSlide = "slide";
 
 void append_bound(JsonWriter& json, double value) {
   if (std::isfinite(value)) {
@@ -45,6 +46,40 @@ Result<void> read_bounds(const JsonValue& entry, const char* key, double side, T
   return {};
 }
 
+void append_mechanism(JsonWriter& json, const Mechanism& mechanism) {
+  json.key("mechanism").object();
+  json.member("type", mechanism.type == JointType::hinge ? kHinge : kSlide);
+  json.key("pos").list();
+  for (const double x : mechanism.p_W) json.value(x);
+  json.end_list().key("axis").list();
+  for (const double x : mechanism.axis_W) json.value(x);
+  json.end_list().member("min", mechanism.min).member("max", mechanism.max).end_object();
+}
+
+Result<Mechanism> read_mechanism(const JsonValue& entry) {
+  constexpr std::string_view kKnown[] = {"type", "pos", "axis", "min", "max"};
+  const auto bad = [] { return fail(Errc::bad_input, text(msg::planning_verify_bad_mechanism)); };
+  if (!entry.is_object()) return fail(Errc::bad_input, text(msg::json_no_object));
+  if (Result<void> fine = check_keys(entry, kKnown); !fine) return fail(std::move(fine.error()));
+  const JsonValue *const type = entry.find("type"), *const min = entry.find("min"),
+                         *const max = entry.find("max");
+  const bool numbers = min != nullptr && max != nullptr && min->is_number() && max->is_number();
+  if (!numbers || type == nullptr || !type->is_string()) return bad();
+  const bool is_hinge = type->string() == kHinge;
+  if (!is_hinge && type->string() != kSlide) return bad();
+  const Result<std::vector<double>> p = number_list(entry, "pos", 3);
+  const Result<std::vector<double>> axis = number_list(entry, "axis", 3);
+  if (!p) return fail(p.error());
+  if (!axis) return fail(axis.error());
+  const Mechanism out{.type = is_hinge ? JointType::hinge : JointType::slide,
+                      .p_W = {(*p)[0], (*p)[1], (*p)[2]},
+                      .axis_W = {(*axis)[0], (*axis)[1], (*axis)[2]},
+                      .min = min->number(),
+                      .max = max->number()};
+  if (!is_sound(out)) return bad();
+  return out;
+}
+
 }  // namespace
 
 void append_kept_region(JsonWriter& json, const TaskRegion& region, const RegionRoom& room) {
@@ -63,11 +98,14 @@ void append_kept_region(JsonWriter& json, const TaskRegion& region, const Region
   append_bound(json, room.place);
   json.key("turn");
   append_bound(json, room.turn);
-  json.end_object().end_object();
+  json.end_object();
+  if (region.mechanism) append_mechanism(json, *region.mechanism);
+  json.end_object();
 }
 
 Result<GivenRegion> read_kept_region(const JsonValue& entry) {
-  constexpr std::string_view kKnown[] = {"frame", "tool", "min", "max", "lean", "room"};
+  constexpr std::string_view kKnown[] = {"frame", "tool", "min",      "max",
+                                         "lean",  "room", "mechanism"};
   constexpr std::string_view kRoom[] = {"place", "turn"};
   if (!entry.is_object()) return fail(Errc::bad_input, text(msg::json_no_object));
   if (Result<void> fine = check_keys(entry, kKnown); !fine) return fail(std::move(fine.error()));
@@ -91,6 +129,11 @@ Result<GivenRegion> read_kept_region(const JsonValue& entry) {
   if (!lean || !place || !turn) return bad_region();
   out.region.lean = *lean;
   out.room = {*place, *turn};
+  if (const JsonValue* const mechanism = entry.find("mechanism"); mechanism != nullptr) {
+    const Result<Mechanism> read = read_mechanism(*mechanism);
+    if (!read) return fail(read.error());
+    out.region.mechanism = *read;
+  }
   if (!is_sound(out.region)) return bad_region();
   return out;
 }

@@ -17,6 +17,7 @@ constexpr double kOneAxis = 1e-12;     // |a x b| of axes that are one
 constexpr double kLeastCosine = 1e-3;  // of the pitch, in rates of roll and yaw
 constexpr double kLeastRange = 0.02;   // [rad or m, L2] of a step
 constexpr double kHalfTurn = std::numbers::pi;
+constexpr double kFreeHinge = 2 * kHalfTurn * (1 - 1e-12);  // [rad] of its range: it has no ends
 
 /// By how much a value between two bounds has to grow to be some way inside; 0: it is.
 double need_of(double value, double min, double max, double inside) {
@@ -51,6 +52,7 @@ RegionProof::RegionProof(const TaskRegion& region, const Arm& arm)
       X_RW_(region.X_WR.inverse()),
       X_TF_(region.X_FT.inverse()),
       leans_(region.lean < kHalfTurn),
+      hangs_on_hinge_(region.mechanism && region.mechanism->type == JointType::hinge),
       dof_(arm.dof()),
       last_turn_(arm.dof()) {
   double below = 0;  // [m] from the origin of the joint before to F
@@ -92,16 +94,19 @@ void RegionProof::find_idle_joints(const Arm& arm) {
     return region_.place_min[k] == -kFreePlace && region_.place_max[k] == kFreePlace;
   };
   const Eigen::Vector3d z_W = region_.X_WR.R.col(2);
-  while (first_turn_ < dof_ && is_free(2) && (slides(first_turn_) || is_about(first_turn_, z_W))) {
+  // Before them comes a hinge that R hangs on; one about z of R is as idle.
+  const bool still = !hangs_on_hinge_ || region_.mechanism->axis_W.cross(z_W).norm() < kOneAxis;
+  while (first_turn_ < dof_ && still && is_free(2) &&
+         (slides(first_turn_) || is_about(first_turn_, z_W))) {
     ++first_turn_;
   }
   const bool is_cone = is_free(0) && is_free(1) && is_free(2);
   const auto idle_at_end = [&](int k) { return slides(k) || is_about(k, X_WF.R.col(2)); };
   while (last_turn_ > first_turn_ && is_cone && idle_at_end(last_turn_ - 1)) --last_turn_;
   if (is_cone && !leans_) first_turn_ = last_turn_;
-  const bool level = is_open(0) && is_open(1);
+  const bool level = still && is_open(0) && is_open(1);
   while (first_place_ < dof_ && level && is_about(first_place_, z_W)) ++first_place_;
-  if (level && is_open(2)) first_place_ = dof_;
+  if (is_open(0) && is_open(1) && is_open(2)) first_place_ = dof_;
 }
 
 EdgeMotion RegionProof::motion(std::span<const double> q0, std::span<const double> q1) const {
@@ -124,9 +129,35 @@ EdgeMotion RegionProof::motion(std::span<const double> q0, std::span<const doubl
       after += 2 * move;
     }
   }
+  out.speed = 0.5 * after;
   return out;
 }
 
+SeenTool RegionProof::see(const Pose& X_WT) const {
+  if (!region_.mechanism) return {.X_RF = X_RW_ * X_WT * X_TF_};
+  const double value = value_for(region_, X_WT);
+  const Pose X_WF = X_WT * X_TF_;
+  const double off = region_.mechanism->axis_W.cross(X_WF.p - region_.mechanism->p_W).norm();
+  return {standing_at(region_, value).X_WR.inverse() * X_WF, value, off};
+}
+
+RegionRoom RegionProof::room(const SeenTool& a, const SeenTool& b, const EdgeMotion& motion,
+                             double part) const {
+  double place = part * part * motion.place, turn = part * motion.turn;
+  if (hangs_on_hinge_) {
+    const Mechanism& hinge = *region_.mechanism;
+    double by = b.value - a.value;
+    if (hinge.max - hinge.min >= kFreeHinge) by = std::remainder(by, 2 * kHalfTurn);
+    by = std::abs(by);
+    const double way = part * motion.speed, off = 0.5 * (a.off + b.off + way);
+    place += by * (2 * way + by * off);
+    turn += by;
+  }
+  return between(a.X_RF, b.X_RF, place / 8, turn * turn / 8);
+}
+
+/// @param place  [m] by which the place may be off the straight line.
+/// @param turn   and a unit vector.
 RegionRoom RegionProof::between(const Pose& a, const Pose& b, double place, double turn) const {
   RegionRoom out;
   for (int k = 0; k < 3; ++k) {
@@ -167,9 +198,11 @@ double RegionProof::room_to_turn(const Eigen::Matrix3d& a, const Eigen::Matrix3d
 
 void RegionProof::add_rows(const FkJacobian& at, std::vector<JointVec>& rows,
                            std::vector<double>& needs) const {
-  const Pose X_RF = pose_of(at.X_WT);
+  const SeenTool seen = see(at.X_WT);
+  const Pose& X_RF = seen.X_RF;
+  const Eigen::Matrix3d R_WR = standing_at(region_, seen.value).X_WR.R, R_RW = R_WR.transpose();
   const Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMaxDof> turns =
-      X_RW_.R * at.J_W.bottomRows<3>();
+      R_RW * at.J_W.bottomRows<3>();
   const Eigen::Vector3d p_TF_W = at.X_WT.R * X_TF_.p;
   const auto add = [&](const JointVec& row, double need, double max) {
     rows.push_back(row);
@@ -179,7 +212,7 @@ void RegionProof::add_rows(const FkJacobian& at, std::vector<JointVec>& rows,
     const double need =
         need_of(X_RF.p[k], region_.place_min[k], region_.place_max[k], kInsidePlace);
     if (need == 0) continue;
-    const Eigen::Vector3d axis_W = region_.X_WR.R.col(k);
+    const Eigen::Vector3d axis_W = R_WR.col(k);
     const JointVec row = at.J_W.topRows<3>().transpose() * axis_W +
                          at.J_W.bottomRows<3>().transpose() * p_TF_W.cross(axis_W);
     add(row, need, kMaxStepPlace);

@@ -43,6 +43,8 @@ double middle_value(double min, double max) {
   return nearest_to_zero(min, max);
 }
 
+bool is_sound_place(double value) { return std::abs(value) <= kWidestPlace; }
+
 Pose tool_at(const TaskRegion& region, const Eigen::Vector3d& p_RF, const Eigen::Vector3d& rpy) {
   return region.X_WR * Pose{p_RF, from_euler(rpy)} * region.X_FT;
 }
@@ -74,13 +76,22 @@ TaskRegion region_about(const Pose& X_WT, const Eigen::Vector3d& half, double le
           .lean = lean};
 }
 
+bool is_sound(const Mechanism& mechanism) noexcept {
+  const double min = mechanism.min, max = mechanism.max;
+  const bool is_range = mechanism.type == JointType::hinge
+                            ? is_sound_turn(min, max, 2 * kPi)
+                            : is_sound_place(min) && is_sound_place(max) && min <= max;
+  return is_range && mechanism.p_W.allFinite() && std::abs(mechanism.axis_W.norm() - 1) < 1e-9;
+}
+
 bool is_sound(const TaskRegion& region) noexcept {
+  if (region.mechanism && !is_sound(*region.mechanism)) return false;
   if (!is_pose(region.X_WR) || !is_pose(region.X_FT)) return false;
   if (!region.turn_min.allFinite() || !region.turn_max.allFinite()) return false;
   for (int k = 0; k < 3; ++k) {
     const double min = region.place_min[k], max = region.place_max[k];
-    const bool low = min == -kFreePlace || std::abs(min) <= kWidestPlace;
-    const bool high = max == kFreePlace || std::abs(max) <= kWidestPlace;
+    const bool low = min == -kFreePlace || is_sound_place(min);
+    const bool high = max == kFreePlace || is_sound_place(max);
     if (!low || !high || !(min <= max)) return false;
     const double farthest = k == 1 ? kFreePitch : 2 * kPi;
     if (!is_sound_turn(region.turn_min[k], region.turn_max[k], farthest)) return false;
@@ -109,7 +120,22 @@ double nearest_winding_to(double angle, const TurnBounds& bounds) noexcept {
   return middle + std::remainder(angle - middle, 2 * kPi);
 }
 
+TaskRegion standing_at(const TaskRegion& region, double value) noexcept {
+  TaskRegion out = region;
+  if (!region.mechanism) return out;
+  out.mechanism.reset();
+  const Mechanism& by = *region.mechanism;
+  if (by.type == JointType::slide) {
+    out.X_WR.p += value * by.axis_W;
+    return out;
+  }
+  const Eigen::Matrix3d turn = rotation_exp(value * by.axis_W);
+  out.X_WR = {by.p_W + turn * (region.X_WR.p - by.p_W), turn * region.X_WR.R};
+  return out;
+}
+
 RegionRoom room_in(const TaskRegion& region, const Pose& X_WT) noexcept {
+  if (region.mechanism) return room_in(standing_at(region, value_for(region, X_WT)), X_WT);
   const Pose X_RF = region.X_WR.inverse() * X_WT * region.X_FT.inverse();
   RegionRoom out;
   const Eigen::Vector3d rpy = to_euler(X_RF.R);
@@ -129,6 +155,7 @@ RegionRoom room_in(const TaskRegion& region, const Pose& X_WT) noexcept {
 }
 
 Pose nearest_in(const TaskRegion& region, const Pose& X_WT) {
+  if (region.mechanism) return nearest_in(standing_at(region, value_for(region, X_WT)), X_WT);
   const Pose X_RF = region.X_WR.inverse() * X_WT * region.X_FT.inverse();
   const Eigen::Vector3d p = X_RF.p.cwiseMax(region.place_min).cwiseMin(region.place_max);
   Eigen::Vector3d rpy = to_euler(X_RF.R);
@@ -151,6 +178,9 @@ Pose nearest_in(const TaskRegion& region, const Pose& X_WT) {
 }
 
 Pose middle_of(const TaskRegion& region) {
+  if (const auto& by = region.mechanism) {
+    return middle_of(standing_at(region, 0.5 * (by->min + by->max)));
+  }
   Eigen::Vector3d p, rpy;
   for (int k = 0; k < 3; ++k) {
     p[k] = middle_value(region.place_min[k], region.place_max[k]);
@@ -162,6 +192,9 @@ Pose middle_of(const TaskRegion& region) {
 }
 
 Pose draw_from(const TaskRegion& region, const Eigen::Vector3d& base, double radius, Rng& rng) {
+  if (const auto& by = region.mechanism) {
+    return draw_from(standing_at(region, rng.uniform(by->min, by->max)), base, radius, rng);
+  }
   const Eigen::Vector3d p_RB = region.X_WR.inverse() * base;
   Eigen::Vector3d p;
   for (int k = 0; k < 3; ++k) {

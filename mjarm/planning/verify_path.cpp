@@ -11,6 +11,7 @@
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/planning/plan_path.hpp"
 #include "mjarm/planning/tilt_limit.hpp"
+#include "mjarm/planning/verify_region_internal.hpp"
 #include "mjarm/planning/verify_scene_internal.hpp"
 
 namespace mjarm {
@@ -20,7 +21,6 @@ constexpr double kEndSlack = 1e-4;        // [rad or m] of start, goal and limit
 constexpr double kAnywhere = 1e9;         // slack with which limits and overlaps do not matter
 constexpr double kCostSlack = 1e-6;       // relative
 constexpr double kTiltSlack = 1e-6;       // [rad]
-constexpr double kRoomSlack = 1e-6;       // [m or rad]
 constexpr double kClearanceAbove = 1e-5;  // [m] by which a stated clearance may be too large
 constexpr double kKeptSlack = 1e-6;       // [m] and what is said to be kept
 constexpr double kClearanceBelow = 1e-3;  // [m] and too small: it is a lower bound
@@ -215,25 +215,30 @@ class PathJudge {
     }
   }
 
-  /// At samples: the tool has the room that is stated, in a region as wide as a path can keep.
+  /// At samples: the tool has the room that is stated, and a mechanism need not jump.
   void check_region() {
     if (!path_.within) return;
     const RegionRoom& stated = path_.within->room;
-    if (!stated.within(kRoomSlack)) {
+    if (!stated.within(detail::kRoomSlack)) {
       add("region", -1, text(msg::planning_verify_no_room, stated.place, stated.turn));
       return;
     }
+    detail::RegionWatch watch(*path_.within);
     for (int edge = 0; edge < edges(); ++edge) {
       if (!is_walkable(edge)) continue;
       const double pieces = pieces_of(edge);
+      const auto tool = [&](double t) { return fk(arm_, on_edge(edge, t)); };
+      double before = 0;
       for (double k = 0; k <= pieces && !is_stopped(rules_.stop); ++k) {
         const double t = k / std::max(pieces, 1.0);
-        const RegionRoom room = room_in(path_.within->region, fk(arm_, on_edge(edge, t)));
-        if (room.place >= stated.place - kRoomSlack && room.turn >= stated.turn - kRoomSlack)
-          continue;
+        const detail::RegionWatch::Found found = watch.look(tool, before, t);
+        before = t;
+        if (found.kept && !found.jumped) continue;
+        const RegionRoom& room = found.room;
         add("region", edge,
-            text(msg::planning_verify_room, edge, t, room.place, room.turn, stated.place,
-                 stated.turn));
+            found.kept ? text(msg::planning_verify_jump, edge, t)
+                       : text(msg::planning_verify_room, edge, t, room.place, room.turn,
+                              stated.place, stated.turn));
         return;
       }
     }

@@ -28,10 +28,60 @@ TaskRegion sound_region(TaskRegion region) {
   return region;
 }
 
+/// The region on a hinge or a slide.
+TaskRegion hung(const TaskRegion& region, JointType type, nb::handle p, nb::handle axis, double min,
+                double max) {
+  const Eigen::Vector3d none = Eigen::Vector3d::Zero(), along = triple(axis, "axis", none);
+  TaskRegion out = region;
+  out.mechanism = Mechanism{.type = type,
+                            .p_W = triple(p, "pos", none),
+                            .axis_W = along.norm() > 0 ? along.normalized() : along,
+                            .min = min,
+                            .max = max};
+  return sound_region(out);
+}
+
+void bind_mechanism(nb::class_<TaskRegion>& region) {
+  region
+      .def(
+          "on_hinge",
+          [](const TaskRegion& self, nb::handle pos, nb::handle axis, double least, double most) {
+            return hung(self, JointType::hinge, pos, axis, least, most);
+          },
+          nb::arg("pos"), nb::arg("axis"), nb::arg("least"), nb::arg("most"),
+          nb::sig("def on_hinge(self, pos: ArrayLike, axis: ArrayLike, least: float, most: float) "
+                  "-> Region"),
+          "The same region on a door, which may stand anywhere from `least` to `most` [rad], about "
+          "an axis in the world\nthrough `pos` [m]; where it stands at 0 the region is as it is "
+          "here.")
+      .def(
+          "on_slide",
+          [](const TaskRegion& self, nb::handle axis, double least, double most) {
+            return hung(self, JointType::slide, nb::none(), axis, least, most);
+          },
+          nb::arg("axis"), nb::arg("least"), nb::arg("most"),
+          nb::sig("def on_slide(self, axis: ArrayLike, least: float, most: float) -> Region"),
+          "The same region on a drawer, which may stand anywhere from `least` to `most` [m] along "
+          "an axis in the world.")
+      .def(
+          "standing_at",
+          [](const TaskRegion& self, double value) { return standing_at(self, value); },
+          nb::arg("value"), nb::sig("def standing_at(self, value: float) -> Region"),
+          "The region while its door or drawer stands at this value [rad] or [m].")
+      .def(
+          "value",
+          [](const TaskRegion& self, nb::handle pose) {
+            return value_for(self, pose_of(pose, "pose"));
+          },
+          nb::arg("pose"), nb::sig("def value(self, pose: PoseLike) -> float"),
+          "Where its door or drawer stands when the tool is at this pose [rad] or [m]; 0 where "
+          "there is none.");
+}
+
 }  // namespace
 
 void bind_region(nb::module_& m) {
-  nb::class_<TaskRegion>(m, "Region", R"(A set of poses of the tool, as a goal or to stay in.
+  nb::class_<TaskRegion> region(m, "Region", R"(A set of poses of the tool, as a goal or to stay in.
 
 The tool may be off `pose` by `half` along its axes to both sides, lean by `lean` and be turned about its z axis by `turn`.
 
@@ -42,7 +92,8 @@ half : array_like, shape (3,), optional
     [m]
 lean, turn : float, optional
     0 to pi [rad].
-)")
+)");
+  region
       .def(
           "__init__",
           [](TaskRegion* self, nb::handle pose, nb::handle half, double lean, double turn) {
@@ -99,6 +150,7 @@ lean, turn : float, optional
       .def_prop_ro(
           "middle", [](const TaskRegion& region) { return middle_of(region); },
           "The pose in its middle.");
+  bind_mechanism(region);
 }
 
 }  // namespace mjarm::python

@@ -161,6 +161,20 @@ def test_regions(robot):
     for a, b in zip(held.path, held.path[1:]):
         for t in np.linspace(0, 1, 20):
             assert abs(robot.fk(a + t * (b - a)).pos[2] - 0.3) <= 0.0501
+    # A door that stands where its handle is, with room for the hand to turn in it; a drawer.
+    handle = mjarm.Region(down, half=[0.01, 0.01, 0.01], lean=0.05, turn=0.5)
+    door = handle.on_hinge([0.6, -0.45, 0], [0, 0, 2], 0, 1.2)
+    held = door.standing_at(0.4).middle
+    assert np.linalg.norm(held.pos - [0.6, -0.45, 0.3]) == pytest.approx(0.3)
+    assert door.value(held) == pytest.approx(0.4) and min(door.room(held)) > 0 > handle.room(held)[0]
+    turned = held @ mjarm.Pose([0, 0, 0], euler=[0, 0, 0.4])
+    assert door.value(turned) == pytest.approx(0.4) and door.room(turned)[1] > 0
+    drawer = handle.on_slide([0, -1, 0], 0, 0.2)
+    pulled = mjarm.Pose([0.3, -0.6, 0.3], quat=down.quat)
+    assert drawer.value(pulled) == pytest.approx(0.15) and handle.value(pulled) == 0
+    for axis, most in (([0, 0, 0], 1), ([0, 0, 1], -1), ([0, 0, 1], 7)):
+        with pytest.raises(mjarm.BadInput, match="Region"):
+            handle.on_hinge([0, 0, 0], axis, 0, most)
     for words in ({"half": [-1, 0, 0]}, {"lean": 4}, {"turn": -1}):
         with pytest.raises(mjarm.BadInput, match="Region"):
             mjarm.Region(down, **words)

@@ -171,6 +171,39 @@ TEST_F(PlanRobot, RegionsInWordsAreGoalsStartsAndWhatIsKept) {
   EXPECT_NE(wrong.err.find("within the region"), std::string::npos) << wrong.err;
 }
 
+TEST_F(PlanRobot, ADoorIsOpenedByAHandThatTurnsInItsHandle) {
+  const std::string door =
+      "pos=10cm,-72cm,30cm tool-euler=90deg,0,0 hinge-pos=40cm,-95cm,0 axis=0,0,2 ";
+  const std::string kept = "hinge=-80deg..2deg x=1cm y=1cm z=1cm roll=3deg pitch=3deg ";
+  const Words words{"--start",       "-68.5deg,-124.2deg,-72.8deg,-163deg,-68.5deg,0",
+                    "--goal-region", door + "hinge=-77deg..-75deg yaw=50deg",
+                    "--keep-within", door + kept + "yaw=50deg"};
+  const auto opened = plan(words);
+  ASSERT_EQ(opened.exit_code, 0) << opened.err;
+  const json mechanism = answer().at("within").at("mechanism");
+  EXPECT_EQ(mechanism.at("type"), "hinge");
+  EXPECT_EQ(mechanism.at("axis"), json({0, 0, 1}));
+  EXPECT_NEAR(mechanism.at("pos")[1], -0.95, 1e-12);
+  EXPECT_NEAR(mechanism.at("min"), -80 * std::numbers::pi / 180, 1e-12);
+  EXPECT_EQ(verify().exit_code, 0);
+  json file = json::parse(folder_.read("path.json"));
+  file.front()["within"]["mechanism"]["min"] = -1;
+  folder_.write("path.json", file.dump());
+  const auto stops = verify();
+  EXPECT_EQ(stops.exit_code, 1);
+  EXPECT_NE(stops.err.find("within the region"), std::string::npos) << stops.err;
+  file.front()["within"]["mechanism"]["type"] = "hinges";
+  folder_.write("path.json", file.dump());
+  const auto wrong = verify();
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_NE(wrong.err.find("\"mechanism\" must have"), std::string::npos) << wrong.err;
+  // What holds fast cannot.
+  Words fast = words;
+  fast[3] = door + "hinge=-77deg..-75deg yaw=3deg";
+  fast[5] = door + kept + "yaw=3deg";
+  EXPECT_EQ(plan(fast).exit_code, 1);
+}
+
 TEST_F(PlanRobot, TheAnswerAndTheLineTellTheSamePostureThatCanBeReached) {
   // The upper arm would have to pass through the floor.
   const auto none = plan({"--start", "-1.5708,-1.5708,1.5708,-1.5708,-1.5708,0", "--goal",
@@ -271,6 +304,15 @@ TEST_F(PlanRobot, WrongWordsGetOneLine) {
       {{"--goal-region", "frame=wal"}, "(did you mean \"wall\"?)"},
       {{"--goal-region", "x=3..1"}, "bounds go from least to largest"},
       {{"--goal-region", "x=5mn"}, "--goal-region: x: "},
+      {{"--goal-region", "hing=70deg"}, "(did you mean \"hinge\"?)"},
+      {{"--goal-region", "hinge=70deg slide=1cm"}, "hinge and slide exclude"},
+      {{"--goal-region", "slide=1cm hinge-pos=0,0,0"}, "\"hinge-pos\" needs one of these"},
+      {{"--goal-region", "axis=0,0,1"}, "\"axis\" needs one of these beside it: hinge, slide"},
+      {{"--goal-region", "hinge=70deg axis=0,0,0"}, "axis is a direction"},
+      {{"--goal-region", "hinge=70deg axis=0,0"}, "--goal-region: axis: "},
+      {{"--goal-region", "hinge=50deg..40deg"}, "hinge and slide go from least to largest"},
+      {{"--goal-region", "slide=0..free"}, "--goal-region: slide: "},
+      {{"--goal-region", "slide=0.."}, "hinge and slide go from least to largest"},
       {{"--goal-region", "z=0", "--lean", "5deg"}, "--goal-region and --lean exclude"},
       {{"--start-region", "z=0", "--hold", "wall", "--pos", "1,2,3"}, "--start-region and --hold"},
       {{"--start-region", "frame=start"}, "frame=start needs one start"},

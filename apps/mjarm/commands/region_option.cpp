@@ -1,7 +1,6 @@
 #include "apps/mjarm/commands/region_option.hpp"
 
 #include <algorithm>
-#include <array>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -19,10 +18,12 @@ namespace {
 
 const std::vector<std::string>& region_keys() {
   static const std::vector<std::string> kKeys{
-      "frame", "pos", "euler", "quat", "tool-pos", "tool-euler", "tool-quat",
-      "x",     "y",   "z",     "roll", "pitch",    "yaw",        "lean"};
+      "frame", "pos",  "euler", "quat", "tool-pos", "tool-euler", "tool-quat", "x",    "y",
+      "z",     "roll", "pitch", "yaw",  "lean",     "hinge",      "slide",     "axis", "hinge-pos"};
   return kKeys;
 }
+constexpr std::size_t kFirstBound = 7, kLean = 13, kHinge = 14, kSlide = 15, kAxis = 16,
+                      kHingePos = 17;  // in the list
 
 /// The values of the words `KEY=VALUE`, in the order of region_keys(); empty: not given.
 using RegionWords = std::vector<std::string>;
@@ -94,6 +95,72 @@ Result<std::pair<double, double>> parse_range(const std::string& key, const std:
   return std::pair{*low, *high};
 }
 
+/// What R hangs on: none without `hinge` and `slide`.
+/// @param X_WB  the frame that its axis is given in.
+Result<std::optional<Mechanism>> mechanism_in_words(const RegionWords& values, const Pose& X_WB) {
+  const std::vector<std::string>& keys = region_keys();
+  const bool hinge = !values[kHinge].empty(), slide = !values[kSlide].empty();
+  if (hinge && slide) {
+    return fail(Errc::usage, text(msg::app_exclusive_options, keys[kHinge], keys[kSlide]));
+  }
+  if (!hinge && !values[kHingePos].empty()) {
+    return fail(Errc::usage, text(msg::plan_region_needs, keys[kHingePos], "hinge"));
+  }
+  if (!hinge && !slide && !values[kAxis].empty()) {
+    return fail(Errc::usage, text(msg::plan_region_needs, keys[kAxis], "hinge, slide"));
+  }
+  if (!hinge && !slide) return std::nullopt;
+  const std::size_t key = hinge ? kHinge : kSlide;
+  const auto range = parse_range(keys[key], values[key], hinge ? Quantity::angle : Quantity::length,
+                                 hinge ? kFreeTurn : kFreePlace);
+  if (!range) return fail(range.error());
+  Mechanism out{.type = hinge ? JointType::hinge : JointType::slide,
+                .p_W = X_WB.p,
+                .axis_W = X_WB.R.col(2),
+                .min = range->first,
+                .max = range->second};
+  if (!values[kHingePos].empty()) {
+    const auto p = parse_list(keys[kHingePos], values[kHingePos], Quantity::length, 3);
+    if (!p) return fail(p.error());
+    out.p_W = X_WB * Eigen::Vector3d((*p)[0], (*p)[1], (*p)[2]);
+  }
+  if (!values[kAxis].empty()) {
+    const auto axis = parse_list(keys[kAxis], values[kAxis], Quantity::number, 3);
+    if (!axis) return fail(axis.error());
+    const Eigen::Vector3d along((*axis)[0], (*axis)[1], (*axis)[2]);
+    if (!(along.norm() > 0)) return fail(Errc::usage, text(msg::plan_region_axis));
+    out.axis_W = X_WB.R * along.normalized();
+  }
+  if (!is_sound(out)) return fail(Errc::usage, text(msg::plan_region_mechanism));
+  return out;
+}
+
+/// The bounds of place and turn, and the lean.
+Result<void> read_region_bounds(const RegionWords& values, Unnamed unnamed, TaskRegion& out) {
+  for (std::size_t k = 0; k < 6; ++k) {
+    const bool is_place = k < 3;
+    const double farthest = is_place ? kFreePlace : k == 4 ? kFreePitch : kFreeTurn;
+    const std::string none = unnamed == Unnamed::free ? "free" : "0";
+    const std::string& given = values[kFirstBound + k];
+    const auto range = parse_range(region_keys()[kFirstBound + k], given.empty() ? none : given,
+                                   is_place ? Quantity::length : Quantity::angle, farthest);
+    if (!range) return fail(range.error());
+    const auto axis = static_cast<Eigen::Index>(k % 3);
+    (is_place ? out.place_min : out.turn_min)[axis] = range->first;
+    (is_place ? out.place_max : out.turn_max)[axis] = range->second;
+  }
+  if (values[kLean].empty()) return {};
+  const Result<double> angle = parse_quantity(values[kLean], Quantity::angle);
+  if (!angle) return fail(in_option("lean", angle.error()));
+  out.lean = *angle;
+  // A cone alone: what it leaves of roll and pitch is not to be said once more.
+  if (values[kFirstBound + 3].empty() && values[kFirstBound + 4].empty()) {
+    out.turn_min.head<2>() << -kFreeTurn, -kFreePitch;
+    out.turn_max.head<2>() << kFreeTurn, kFreePitch;
+  }
+  return {};
+}
+
 Result<Pose> pose_of_frame(const std::string& name, const Robot& robot,
                            const std::optional<Pose>& X_WT) {
   if (name.empty()) return Pose{};
@@ -122,29 +189,10 @@ Result<TaskRegion> parse_region(const std::string& option, const std::string& wo
   const Result<Pose> X_FT = pose_in_words("tool-", value(4), value(5), value(6));
   if (!X_FT) return in(X_FT.error());
   TaskRegion out{.X_WR = *X_WB * *X_BR, .X_FT = *X_FT};
-  constexpr std::size_t kFirst = 7;
-  for (std::size_t k = 0; k < 6; ++k) {
-    const bool is_place = k < 3;
-    const double farthest = is_place ? kFreePlace : k == 4 ? kFreePitch : kFreeTurn;
-    const std::string none = unnamed == Unnamed::free ? "free" : "0";
-    const std::string& given = value(kFirst + k);
-    const auto range = parse_range(region_keys()[kFirst + k], given.empty() ? none : given,
-                                   is_place ? Quantity::length : Quantity::angle, farthest);
-    if (!range) return in(range.error());
-    const auto axis = static_cast<Eigen::Index>(k % 3);
-    (is_place ? out.place_min : out.turn_min)[axis] = range->first;
-    (is_place ? out.place_max : out.turn_max)[axis] = range->second;
-  }
-  if (const std::string& lean = value(kFirst + 6); !lean.empty()) {
-    const Result<double> angle = parse_quantity(lean, Quantity::angle);
-    if (!angle) return in(in_option("lean", angle.error()));
-    out.lean = *angle;
-    // A cone alone: what it leaves of roll and pitch is not to be said once more.
-    if (value(kFirst + 3).empty() && value(kFirst + 4).empty()) {
-      out.turn_min.head<2>() << -kFreeTurn, -kFreePitch;
-      out.turn_max.head<2>() << kFreeTurn, kFreePitch;
-    }
-  }
+  if (Result<void> read = read_region_bounds(*values, unnamed, out); !read) return in(read.error());
+  const auto mechanism = mechanism_in_words(*values, *X_WB);
+  if (!mechanism) return in(mechanism.error());
+  out.mechanism = *mechanism;
   if (!is_sound(out)) return in({Errc::usage, text(msg::plan_region_bounds)});
   return out;
 }
