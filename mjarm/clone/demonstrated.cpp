@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "mjarm/core/messages/clone.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/core/stored_zip.hpp"
 #include "mjarm/episode/draw_scene.hpp"
@@ -96,6 +97,9 @@ Result<void> add_episode(const fs::path& file, episode::Studio& studio, Demonstr
 
 Result<Demonstrated> read_demonstrated(const fs::path& folder, std::size_t most,
                                        const StopCheck& stop) {
+  if (!fs::is_directory(folder)) {
+    return fail(Errc::bad_input, text(msg::core_no_such_folder, folder.string()));
+  }
   std::vector<fs::path> files = episode::succeeded_files(folder);
   if (files.empty()) return fail(Errc::bad_input, text(msg::clone_none, folder.string()));
   if (most > 0 && files.size() > most) files.resize(most);

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "mjarm/core/messages/kinematics.hpp"
 #include "mjarm/kinematics/fk.hpp"
 
 namespace mjarm {
@@ -21,6 +22,22 @@ std::string_view name(SingularKind kind) noexcept {
       return "other";
   }
   return "other";
+}
+
+std::string describe(SingularKind kind) {
+  switch (kind) {
+    case SingularKind::none:
+      return "";
+    case SingularKind::shoulder:
+      return text(msg::kinematics_shoulder);
+    case SingularKind::elbow:
+      return text(msg::kinematics_elbow);
+    case SingularKind::wrist:
+      return text(msg::kinematics_wrist);
+    case SingularKind::other:
+      break;
+  }
+  return text(msg::kinematics_other_part);
 }
 
 namespace {

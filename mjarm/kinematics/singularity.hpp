@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "mjarm/kinematics/ik.hpp"
@@ -18,6 +19,8 @@ enum class SingularKind {
 
 /// "none", "shoulder", "elbow", "wrist" or "other".
 [[nodiscard]] std::string_view name(SingularKind kind) noexcept;
+/// The same in the user's language; empty for none.
+[[nodiscard]] std::string describe(SingularKind kind);
 
 /// How near a configuration is to a singularity.
 struct Singularity {

@@ -29,7 +29,7 @@ std::string describe_cause(const PathFailure& failure, const Arm& arm) {
     case PathErrc::joint_limit:
       return text(msg::path_joint_limit, joint.name, failure.amount, joint.unit);
     case PathErrc::singularity:
-      return text(msg::path_singularity, name(failure.kind), joint.name, failure.amount,
+      return text(msg::path_singularity, describe(failure.kind), joint.name, failure.amount,
                   joint.unit);
     case PathErrc::collision:
       if (failure.pair.geom1.empty()) return text(msg::path_refused);

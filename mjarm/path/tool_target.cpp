@@ -234,7 +234,7 @@ std::string ToolTarget::line_of(const Standing& standing) const {
   if (standing.jump) return jump_line(*standing.jump);
   const double smallest = standing.singular.smallest;
   if (standing.grade == TargetGrade::near_singular) {
-    return text(msg::target_near_singular, name(standing.singular.kind), smallest);
+    return text(msg::target_near_singular, describe(standing.singular.kind), smallest);
   }
   if (std::isinf(standing.room)) return text(msg::target_reachable_endless, smallest);
   const Msg message =

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <vector>
 
 namespace mjarm::render {
 namespace {
 
 constexpr Rgba kFar = {0.20F, 0.60F, 0.35F, 1};
 constexpr Rgba kNear = {0.90F, 0.15F, 0.15F, 1};
-constexpr double kPathDashes = 60;       ///< dashes a path
+constexpr double kPathDashes = 60;       ///< dashes a picture
 constexpr double kShortestDash = 0.005;  ///< [m]
 
 }  // namespace
@@ -40,15 +41,27 @@ void add_closest_pair(Overlay& overlay, const Eigen::Vector3d& p1_W, const Eigen
 }
 
 void add_planned_path(Overlay& overlay, std::span<const Pose> X_WT, const PathLook& look) {
-  OverlayLine& line = overlay.lines.emplace_back();
-  line.width = look.width;
-  line.color = look.color;
+  const std::vector<Pose> path(X_WT.begin(), X_WT.end());
+  add_planned_paths(overlay, {&path, 1}, look);
+}
+
+void add_planned_paths(Overlay& overlay, std::span<const std::vector<Pose>> X_WT,
+                       const PathLook& look) {
   double length = 0;
-  for (const Pose& pose : X_WT) {
-    if (!line.points_W.empty()) length += (pose.p - line.points_W.back()).norm();
-    line.points_W.push_back(pose.p);
+  const std::size_t first = overlay.lines.size();
+  for (const std::vector<Pose>& path : X_WT) {
+    OverlayLine& line = overlay.lines.emplace_back();
+    line.width = look.width;
+    line.color = look.color;
+    for (const Pose& pose : path) {
+      if (!line.points_W.empty()) length += (pose.p - line.points_W.back()).norm();
+      line.points_W.push_back(pose.p);
+    }
   }
-  if (look.dashed) line.dash = std::max(kShortestDash, length / (2 * kPathDashes));
+  if (!look.dashed) return;
+  for (OverlayLine& line : std::span(overlay.lines).subspan(first)) {
+    line.dash = std::max(kShortestDash, length / (2 * kPathDashes));
+  }
 }
 
 void add_velocity_ellipsoid(Overlay& overlay, const Eigen::Vector3d& p_WT,

@@ -44,6 +44,9 @@ struct PathLook {
 
 /// Appends the way of the tool as it is planned, shape (n,).
 void add_planned_path(Overlay& overlay, std::span<const Pose> X_WT, const PathLook& look = {});
+/// Several of them, which share the dashes of one: a picture can afford so many.
+void add_planned_paths(Overlay& overlay, std::span<const std::vector<Pose>> X_WT,
+                       const PathLook& look = {});
 
 /// Appends an ellipsoid of velocities [m/s a unit of joint speed] at the tool.
 /// @param R_WE       axes as columns.

@@ -1,6 +1,8 @@
 #include "mjarm/session/program_scene.hpp"
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "mjarm/render/overlay_shapes.hpp"
 
@@ -19,10 +21,12 @@ render::Pen pen_of(MotionPart part) {
 void add_planned_paths(render::Overlay& overlay, const MotionPlan& plan) {
   // A tool that presses is not where its motion is: add_ink() shows where it was.
   if (plan.presses()) return;
+  std::vector<std::vector<Pose>> paths;
   for (const PlannedMove& move : plan.moves) {
     if (!move.curve && move.corners.empty()) continue;
-    render::add_planned_path(overlay, planned_tool_path(move, plan.arms[move.tool]));
+    paths.push_back(planned_tool_path(move, plan.arms[move.tool]));
   }
+  render::add_planned_paths(overlay, paths);
 }
 
 void add_ink(render::Overlay& overlay, std::span<const InkPoint> ink) {
@@ -41,12 +45,13 @@ void add_ink(render::Overlay& overlay, std::span<const InkPoint> ink) {
 
 ProgramScene::ProgramScene(const program::LoadedProgram& loaded, int first_figure)
     : loaded_(&loaded), figures_(loaded.robot.arm, first_figure, {true, true}) {
+  std::vector<std::vector<Pose>> curves, joint_moves;
   for (const PlannedMove& move : loaded.plan.moves) {
-    render::PathLook look;
-    if (!move.curve) look.color = kJointMoveColor;
-    const std::vector<Pose> X_WT = planned_tool_path(move, loaded.plan.arms[move.tool]);
-    if (X_WT.size() > 1) render::add_planned_path(paths_, X_WT, look);
+    std::vector<Pose> X_WT = planned_tool_path(move, loaded.plan.arms[move.tool]);
+    if (X_WT.size() > 1) (move.curve ? curves : joint_moves).push_back(std::move(X_WT));
   }
+  render::add_planned_paths(paths_, curves);
+  render::add_planned_paths(paths_, joint_moves, {.color = kJointMoveColor});
 }
 
 void ProgramScene::add(const Sim& sim, double time, std::size_t motion, const JointVec& q_ref) {

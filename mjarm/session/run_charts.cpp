@@ -172,6 +172,7 @@ render::PlotPanel error_panel(std::span<const MeasuredRun> runs, double toleranc
   panel.y_from_zero = true;
   render::PlotLine line;
   for (const MeasuredRun& run : runs) {
+    if (ideal && run.curve == nullptr) continue;  // is on its way to one, or grips
     const Rows rows = rows_to_draw({&run, 1});
     const std::vector<double> t = times(rows);
     const std::vector<double> error = column(rows, [&run](const RecordRow& row) {

@@ -17,6 +17,7 @@ namespace {
 
 constexpr auto kRest = std::chrono::microseconds(500);
 constexpr render::Rgba kPlanned = {0.85F, 0.15F, 0.15F, 1};
+constexpr render::Rgba kUnreachable = {0.98F, 0.62F, 0.05F, 1};
 constexpr render::Rgba kGoal = {0.15F, 0.70F, 0.30F, 0.6F};
 
 }  // namespace
@@ -34,6 +35,12 @@ Result<RunShow> RunShow::open(const Model& model, const std::string& title, bool
 void RunShow::add_points(std::span<const Pose> X_WT, std::size_t every) {
   for (std::size_t i = 0; i < X_WT.size(); i += every) {
     planned_.spheres.push_back({.p_W = X_WT[i].p, .radius = 0.005, .color = kPlanned});
+  }
+}
+
+void RunShow::add_unreachable(std::span<const Pose> X_WT) {
+  for (const Pose& pose : X_WT) {
+    planned_.spheres.push_back({.p_W = pose.p, .radius = 0.009, .color = kUnreachable});
   }
 }
 

@@ -37,6 +37,8 @@ class RunShow {
 
   /// Red balls at every `every`-th of the positions.
   void add_points(std::span<const Pose> X_WT, std::size_t every);
+  /// Larger orange balls at places that the tool cannot get to.
+  void add_unreachable(std::span<const Pose> X_WT);
   /// How the trail goes on with every call of `step`; at first it does not.
   void set_pen(render::Pen pen) { trail_.set_pen(pen); }
   /// Red balls along the trail, as the tutorial draws it.

@@ -212,7 +212,7 @@ std::string describe(const SpeedDip& dip, const Arm& arm) {
   const std::string line = text(msg::trajectory_dip, dip.s_from, dip.s_to, dip.t_from, dip.t_to,
                                 dip.least, joint, word());
   if (dip.kind == SingularKind::none) return line;
-  return text(msg::trajectory_dip_singular, line, name(dip.kind));
+  return text(msg::trajectory_dip_singular, line, describe(dip.kind));
 }
 
 std::vector<SpeedDip> find_speed_dips(const IkSolver& ik, const Curve& curve,

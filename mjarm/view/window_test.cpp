@@ -134,7 +134,7 @@ TEST_F(WindowDeathTest, WithoutADisplaySaysWhatToDo) {
   const auto run = [] {
     unsetenv("DISPLAY");
     unsetenv("WAYLAND_DISPLAY");
-    expect_refusal(window_scene(), {}, "no display: use --headless");
+    expect_refusal(window_scene(), {}, "no display: mjarm serve");
   };
   EXPECT_EXIT(run(), ::testing::ExitedWithCode(0), "");
 }

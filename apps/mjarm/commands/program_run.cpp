@@ -1,6 +1,9 @@
 #include "apps/mjarm/commands/program_run.hpp"
 
+#include <algorithm>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "apps/mjarm/messages/motion_program.hpp"
 #include "mjarm/core/log.hpp"
@@ -9,17 +12,34 @@
 #include "mjarm/session/show_program.hpp"
 
 namespace mjarm::app {
+namespace {
+
+/// What a user should know of them; the same motion again says nothing new.
+void tell_motions(const session::Stage& stage, const program::ProgramPlan& plan) {
+  std::vector<std::string> told;
+  for (const PlannedMove& move : plan.moves) {
+    stage.tell_servos(move.trajectory);
+    for (const SpeedDip& dip : move.dips) {
+      std::string line = describe(dip, plan.arms[move.tool]);
+      if (move.place.line > 0) line = text(msg::motion_program_dip, move.place.line, line);
+      if (std::ranges::find(told, line) != told.end()) continue;
+      log_info(line);
+      told.push_back(std::move(line));
+    }
+  }
+}
+
+}  // namespace
 
 Result<Report> run_plan(session::Stage& stage, const program::LoadedProgram& loaded,
                         double tolerance, Report begun) {
   const program::ProgramPlan& plan = loaded.plan;
-  const double steps = (plan.duration() + kRestAtEnd) / loaded.robot.model.timestep();
+  // How long a tool that presses looks for the surface is not known.
+  const double steps =
+      plan.presses() ? 0 : (plan.duration() + kRestAtEnd) / loaded.robot.model.timestep();
   Progress progress(text(msg::motion_program_running), static_cast<std::uint64_t>(steps));
   stage.set_tick([&progress] { progress.advance(); });
-  for (const PlannedMove& move : plan.moves) {
-    stage.tell_servos(move.trajectory);
-    for (const SpeedDip& dip : move.dips) log_info(describe(dip, plan.arms[move.tool]));
-  }
+  tell_motions(stage, plan);
   render::Overlay paths;
   session::add_planned_paths(paths, plan);
   stage.show().add(paths);

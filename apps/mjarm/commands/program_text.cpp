@@ -28,7 +28,7 @@ std::vector<std::string> row_of(const program::ProgramPlan& plan, const PlannedM
       or_dash(move.curve.has_value(),
               fmt::format("{:.3f} m", move.curve ? move.curve->length() : 0.0)),
       or_dash(moves, fmt::format("{:.3g}{}{}", singular.smallest, near ? " " : "",
-                                 near ? name(singular.kind) : "")),
+                                 describe(singular.kind))),
       or_dash(moves && measures.limit_joint >= 0,
               fmt::format("{:.3g} {}", measures.limit_room,
                           measures.limit_joint < 0

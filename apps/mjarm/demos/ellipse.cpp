@@ -23,6 +23,7 @@ Result<Report> refuse(session::Stage& stage, std::span<const Pose> points,
   std::string detail;
   for (const UnreachableRange& range : ranges) {
     for (std::size_t i = range.first; i <= range.last; ++i) report.unreachable.push_back(i);
+    stage.show().add_unreachable(points.subspan(range.first, range.last - range.first + 1));
     if (!detail.empty()) detail += text(msg::core_semicolon);
     detail += text(msg::demo_points_unreachable, range.first, range.last, points.size(),
                    describe(range.worst, stage.arm()));
