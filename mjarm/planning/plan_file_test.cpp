@@ -61,6 +61,11 @@ TEST_F(PlanFileTest, AnswersAreReadAsTheyWereWritten) {
   TaskRegion region =
       region_about({{1, 2, 3}, rotation_exp({0.1, 0.2, 0.3})}, {kFreePlace, 0.1, 0.2}, 0.3, 1);
   region.X_FT = {{0, 0, 0.5}, rotation_exp({1, 0, 0})};
+  region.mechanism = Mechanism{.type = JointType::slide,
+                               .p_W = {1, 0, 2},
+                               .axis_W = {0.6, 0, -0.8},
+                               .min = -0.1,
+                               .max = 0.2};
   answer.within = region;
   answer.path->room = {kFreePlace, 0.125};
   answer.path->goal_region = 2;
@@ -95,6 +100,12 @@ TEST_F(PlanFileTest, AnswersAreReadAsTheyWereWritten) {
   EXPECT_EQ(read.turn_min, region.turn_min);
   EXPECT_EQ(read.turn_max, region.turn_max);
   EXPECT_EQ(read.lean, region.lean);
+  ASSERT_TRUE(read.mechanism);
+  EXPECT_EQ(read.mechanism->type, JointType::slide);
+  EXPECT_EQ(read.mechanism->p_W, region.mechanism->p_W);
+  EXPECT_EQ(read.mechanism->axis_W, region.mechanism->axis_W);
+  EXPECT_EQ(read.mechanism->min, -0.1);
+  EXPECT_EQ(read.mechanism->max, 0.2);
   const Pose X_WT{{1.2, 2.05, 3}, Eigen::Matrix3d::Identity()};
   EXPECT_NEAR(room_in(read, X_WT).place, room_in(region, X_WT).place, 1e-12);
   EXPECT_NEAR(room_in(read, X_WT).turn, room_in(region, X_WT).turn, 1e-12);
@@ -158,6 +169,30 @@ TEST_F(PlanFileTest, FilesThatAreNoneAreRefusedByTheirPlace) {
   const auto missing = read_plan_file("/no/such.json", 2);
   ASSERT_FALSE(missing);
   EXPECT_NE(missing.error().what.find("/no/such.json"), std::string::npos);
+}
+
+TEST_F(PlanFileTest, MechanismsThatAreNoneAreRefused) {
+  const auto file_with = [](const std::string& mechanism) {
+    const std::string pose = R"({"pos":[0,0,0],"quat":[1,0,0,0]})";
+    return R"({"id":{"path":[[-1,0]],"within":{"frame":)" + pose + R"(,"tool":)" + pose +
+           R"(,"min":[0,0,0,0,0,0],"max":[1,1,1,1,1,1],"lean":1,"room":{"place":0,"turn":0},)" +
+           R"("mechanism":)" + mechanism + "}}}";
+  };
+  const auto member = [](const char* type, const char* axis, const char* max) {
+    return std::string(R"({"type":)") + type + R"(,"pos":[0,0,0],"axis":)" + axis +
+           R"(,"min":0,"max":)" + max + "}";
+  };
+  const auto fine = read(file_with(member(R"("hinge")", "[0,0,1]", "1")));
+  ASSERT_TRUE(fine) << fine.error().what;
+  EXPECT_EQ(fine->at(0).within->region.mechanism->max, 1);
+  expect_refused(file_with("3"), "within");
+  expect_refused(file_with("{}"), "\"mechanism\" must have");
+  expect_refused(file_with(member(R"("door")", "[0,0,1]", "1")), "\"mechanism\" must have");
+  expect_refused(file_with(member("1", "[0,0,1]", "1")), "\"mechanism\" must have");
+  expect_refused(file_with(member(R"("hinge")", "[0,0,2]", "1")), "\"mechanism\" must have");
+  expect_refused(file_with(member(R"("hinge")", "[0,0,1]", "-1")), "\"mechanism\" must have");
+  expect_refused(file_with(member(R"("hinge")", "[0,0,1]", "null")), "\"mechanism\" must have");
+  expect_refused(file_with(member(R"("hinge")", "[0,1]", "1")), "axis");
 }
 
 TEST_F(PlanFileTest, WhatIsStatedMustBePossible) {

@@ -41,9 +41,8 @@ TaskRegion hung(const TaskRegion& region, JointType type, nb::handle p, nb::hand
   return sound_region(out);
 }
 
-void bind_mechanism(nb::class_<TaskRegion>& region) {
-  region
-      .def(
+void bind_mechanism(nb::class_<TaskRegion>& type) {
+  type.def(
           "on_hinge",
           [](const TaskRegion& self, nb::handle pos, nb::handle axis, double least, double most) {
             return hung(self, JointType::hinge, pos, axis, least, most);
@@ -81,7 +80,7 @@ void bind_mechanism(nb::class_<TaskRegion>& region) {
 }  // namespace
 
 void bind_region(nb::module_& m) {
-  nb::class_<TaskRegion> region(m, "Region", R"(A set of poses of the tool, as a goal or to stay in.
+  nb::class_<TaskRegion> type(m, "Region", R"(A set of poses of the tool, as a goal or to stay in.
 
 The tool may be off `pose` by `half` along its axes to both sides, lean by `lean` and be turned about its z axis by `turn`.
 
@@ -93,8 +92,7 @@ half : array_like, shape (3,), optional
 lean, turn : float, optional
     0 to pi [rad].
 )");
-  region
-      .def(
+  type.def(
           "__init__",
           [](TaskRegion* self, nb::handle pose, nb::handle half, double lean, double turn) {
             new (self) TaskRegion(sound_region(region_about(
@@ -150,7 +148,7 @@ lean, turn : float, optional
       .def_prop_ro(
           "middle", [](const TaskRegion& region) { return middle_of(region); },
           "The pose in its middle.");
-  bind_mechanism(region);
+  bind_mechanism(type);
 }
 
 }  // namespace mjarm::python
