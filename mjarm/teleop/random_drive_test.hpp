@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -109,10 +110,12 @@ class GraspingHand {
 
 /// Contacts that the arm should never have, by MuJoCo's own list and the tree of bodies: of links,
 /// hand and fingers with anything, but of fingers with bodies that have a free joint, and of the
-/// hand's parts with each other.
+/// hand's parts with each other. What moves is nobody's fault: a thing that is let go over a hand
+/// that points upwards falls on it.
 class ForbiddenContacts {
  public:
-  explicit ForbiddenContacts(const Robot& robot) : m_(*robot.model.raw()) {
+  explicit ForbiddenContacts(const Robot& robot)
+      : m_(*robot.model.raw()), moved_(static_cast<std::size_t>(m_.nbody), false) {
     const int first = m_.dof_bodyid[robot.arm.joints.front().dof];
     const int last = m_.dof_bodyid[robot.arm.joints.back().dof];
     for (int b = 0; b < static_cast<int>(m_.nbody); ++b) {
@@ -122,15 +125,23 @@ class ForbiddenContacts {
     }
   }
 
-  /// The first of them as "left_finger - table"; empty: none.
-  [[nodiscard]] std::string first(const Sim& sim) const {
+  /// The first of them as "left_finger - table"; empty: none. To be called after each period.
+  [[nodiscard]] std::string first(const Sim& sim) {
+    std::string out;
     for (const Contact& contact : sim.contacts()) {
       if (contact.depth <= 0 || contact.body1 < 0 || contact.body2 < 0) continue;
       if (is_bad(contact.body1, contact.body2) || is_bad(contact.body2, contact.body1)) {
-        return contact.first + " - " + contact.second;
+        out = contact.first + " - " + contact.second;
+        break;
       }
     }
-    return {};
+    for (int b = 0; b < static_cast<int>(m_.nbody); ++b) {
+      if (!is_free(b)) continue;
+      const std::span<const double> v =
+          sim.qvel().subspan(static_cast<std::size_t>(m_.jnt_dofadr[m_.body_jntadr[b]]), 3);
+      moved_[static_cast<std::size_t>(b)] = std::hypot(v[0], v[1], v[2]) > kStill;
+    }
+    return out;
   }
 
  private:
@@ -140,10 +151,12 @@ class ForbiddenContacts {
   bool is_bad(int body, int other) const {
     const auto b = static_cast<std::size_t>(body), o = static_cast<std::size_t>(other);
     if (!arm_[b] || (hand_[b] && hand_[o])) return false;
-    return !(finger_[b] && is_free(other));
+    return !(is_free(other) && (finger_[b] || moved_[o]));
   }
 
+  static constexpr double kStill = 0.01;  // [m/s]
   const mjModel& m_;
+  std::vector<bool> moved_;  // in the period before
   std::vector<bool> arm_, hand_, finger_;
 };
 
@@ -166,7 +179,7 @@ inline DriveResult drive(const Robot& robot, const TeleopOptions& options, std::
   Result<Teleop> teleop = Teleop::create(robot, options);
   if (!teleop) throw std::runtime_error(teleop.error().what);
   std::optional<GraspingHand> hand;
-  const ForbiddenContacts forbidden(robot);
+  ForbiddenContacts forbidden(robot);
   DriveResult out;
   int near = 0, all = 0;
   Eigen::Vector3d p;
