@@ -109,7 +109,8 @@ configure_wheel() {
   python_environment build || return
   rm -f "$root"/build/wheel/python/mjarm/_core*
   quiet cmake -S "$root" --preset wheel -U 'Python_*' -U '_Python*' -U 'nanobind_*' \
-    -DMUJOCO_ROOT="${MUJOCO_ROOT:-$mujoco/mujoco}" -DMJARM_PYTHON=ON -DPython_EXECUTABLE="$environment/bin/python"
+    -DMUJOCO_ROOT="${MUJOCO_ROOT:-$mujoco/mujoco}" -DMJARM_PYTHON=ON -DPython_EXECUTABLE="$environment/bin/python" &&
+    note_libraries wheel
 }
 
 # Data sets and the environment, judged by LeRobot itself, which takes a Python from 3.12 on. It is large, so no part of `./dev test`.

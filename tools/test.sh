@@ -264,7 +264,7 @@ run_menagerie() {
 run_benches() {
   local bench
   build release benches
-  for bench in "$root"/build/release/bin/*_bench; do
-    if [[ -x $bench ]]; then "$bench"; fi
-  done
+  compgen -G "$root/build/release/bin/*_bench" >/dev/null ||
+    die "bench: nothing to run: cmake found no google-benchmark (Debian and Ubuntu: libbenchmark-dev)"
+  for bench in "$root"/build/release/bin/*_bench; do "$bench"; done
 }
