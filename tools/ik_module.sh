@@ -2,19 +2,23 @@
 
 # Prints why the module cannot be built here; nothing where it can.
 ik_module_lacks() {
-  command -v em++ >/dev/null || { echo "emscripten is missing: apt-get install --no-install-recommends emscripten" && return; }
+  command -v em++ >/dev/null || { words no_emscripten && return; }
   [[ -d /usr/include/eigen3 && -e /usr/include/tl/expected.hpp && -e /usr/include/fmt/format.h ]] ||
-    echo "the headers of Eigen, expected and fmt are not in /usr/include"
+    words no_headers
 }
 
-# web/dist/ik.wasm, where emscripten is there.
+# web/dist/ik.wasm, where emscripten is there; else says once for each time the page is built what that means.
 build_ik_module() {
   local built=$root/build/ik_module why
   why=$(ik_module_lacks)
-  [[ -z $why ]] || { say "page: solves no kinematics by itself ($why)" && return; }
+  if [[ $why ]]; then
+    [[ $built/said -nt $root/web/dist/index.html ]] || say "$(words no_page_kinematics "$why")"
+    { mkdir -p "$built" && : >"$built/said"; } 2>/dev/null || true
+    return
+  fi
   mkdir -p "$built" "$root/web/dist"
   if [[ $(ninja -C "$built" -f "$root/web/ik/build.ninja" -n 2>&1) != *"no work to do"* ]]; then
-    step "Kinematics of the page: compiling" \
+    step "$(words page_kinematics)" \
       quiet ninja -C "$built" -f "$root/web/ik/build.ninja" -j "$(jobs_at_once)" || return
   fi
   cmp -s "$built/ik.wasm" "$root/web/dist/ik.wasm" || cp "$built/ik.wasm" "$root/web/dist/ik.wasm"

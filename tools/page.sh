@@ -39,8 +39,8 @@ bundle_page() {
 # web/dist, where it is missing or older than its sources.
 build_page() {
   page_is_up_to_date && return
-  [[ $may_install == yes ]] || { say "the page of 'mjarm serve' is not built; ./dev page builds it" && return 1; }
-  step "Page: building" quiet bundle_page
+  [[ $may_install == yes ]] || { say "$(words no_page)" && return 1; }
+  step "$(words page)" quiet bundle_page
 }
 
 # test_page PRESET RESULTS: in a browser, beside the program of that build. Returns 77 where it cannot.

@@ -15,10 +15,10 @@ optional_test_packages="libompl-dev libapriltag-dev"
 
 # One process at a time sets up or builds in this folder.
 lock() {
-  mkdir -p "$deps"
+  { mkdir -p "$deps" && : >>"$deps/lock"; } 2>/dev/null || die "$(words read_only "$root")"
   exec 9>"$deps/lock"
   flock -n 9 && return
-  say "waiting for another ./dev in this folder"
+  say "$(words waiting)"
   flock 9
 }
 unlock() { exec 9>&-; }
@@ -27,9 +27,9 @@ unlock() { exec 9>&-; }
 step() {
   local text=$1 from=$SECONDS
   shift
-  say "$text ..."
+  say "$(words begins "$text")"
   "$@" || return
-  say "$text: done in $((SECONDS - from)) s"
+  say "$(words finished "$text" $((SECONDS - from)))"
 }
 
 # quiet COMMAND...: its output is shown only when it fails.
@@ -44,6 +44,8 @@ quiet() {
   rm -f "$log"
   return 1
 }
+
+silent() { "$@" &>/dev/null; }
 
 # missing PACKAGE...: those that are not installed.
 missing() {
@@ -64,7 +66,18 @@ as_root() {
 }
 
 apt_install() {
-  quiet as_root apt-get install -y -qq --no-install-recommends "$@"
+  as_root apt-get install -y -qq --no-install-recommends "$@"
+}
+
+# Ends where a list cannot be fetched, which apt-get takes for a warning.
+apt_update() {
+  step "$(words apt_update)" quiet as_root apt-get update -qq -o APT::Update::Error-Mode=any || die "$(words no_update)"
+}
+
+# How many MB apt-get would fetch to install PACKAGE...
+megabytes_of() {
+  apt-get install -y -qq --no-install-recommends --print-uris "$@" 2>/dev/null |
+    awk '{bytes += $3} END {print int(bytes / 1e6 + 0.5)}'
 }
 
 # The ones of PACKAGE... that apt knows a version of.
@@ -73,34 +86,41 @@ available() {
     /^  Candidate:/ && $2 != "(none)" {print name}'
 }
 
+# with_optional PACKAGE...: these, and the optional ones that this release has.
+with_optional() {
+  local optional
+  mapfile -t optional < <(missing $optional_packages)
+  printf '%s\n' "$@"
+  ((${#optional[@]} == 0)) || available "${optional[@]}"
+}
+
+# The command that installs PACKAGE..., for somebody who may.
+install_line() {
+  echo "apt-get install --no-install-recommends" $(with_optional "$@")
+}
+
 install_packages() {
-  local wanted=("$@") extra
-  ((EUID == 0)) || { command -v sudo >/dev/null && sudo true; } ||
-    die "installing packages needs root: run ./dev as root, or as a user whom sudo lets in"
-  if (($(available "${wanted[@]}" | wc -l) < ${#wanted[@]})); then
-    step "Package lists: apt-get update" quiet as_root apt-get update -qq ||
-      die "apt-get update failed: is the network there, and may you be root?"
-  fi
-  mapfile -t extra < <(available $(missing $optional_packages))
-  step "System packages: installing ${#wanted[@]}" apt_install "${wanted[@]}" "${extra[@]}" ||
-    { step "Package lists are old: apt-get update" quiet as_root apt-get update -qq &&
-      step "System packages: second try" apt_install "${wanted[@]}" "${extra[@]}"; } ||
-    die "apt-get could not install: ${wanted[*]}"
+  local wanted
+  ((EUID == 0)) || { command -v sudo >/dev/null && sudo true; } || die "$(words needs_root "$(install_line "$@")")"
+  (($(available "$@" | wc -l) == $#)) || apt_update
+  mapfile -t wanted < <(with_optional "$@")
+  step "$(words apt_install ${#wanted[@]} "$(megabytes_of "${wanted[@]}")")" silent apt_install "${wanted[@]}" && return
+  apt_update  # the lists may be old
+  step "$(words apt_again)" quiet apt_install "${wanted[@]}" || die "$(words no_install "$*")"
 }
 
 # set_up_packages run|test|NAME...
 set_up_packages() {
-  local wanted
+  local wanted program
   if ! command -v dpkg-query >/dev/null; then
-    say "this is neither Debian nor Ubuntu, so no packages are installed; going on with what is there"
+    say "$(words no_dpkg "$*")"
+    for program in cmake ninja c++; do command -v "$program" >/dev/null || die "$(words no_program "$program")"; done
     return
   fi
   mapfile -t wanted < <(missing "$@")
   ((${#wanted[@]})) || return 0
-  say "missing system packages: ${wanted[*]}"
-  if [[ $may_install == no ]]; then
-    die "install them with: apt-get install --no-install-recommends ${wanted[*]}"
-  fi
+  say "$(words missing "${wanted[*]}")"
+  [[ $may_install == yes ]] || die "$(words install_line "$(install_line "${wanted[@]}")")"
   install_packages "${wanted[@]}"
 }
 
@@ -113,7 +133,7 @@ python_with_pip() {
       return
     fi
   done
-  die "no python3 with pip: install python3-pip"
+  die "$(words no_pip)"
 }
 
 # fetch_wheel NAME VERSION SHA256 MEMBERS PIP_ARGS...: downloads one wheel, checks its hash, and
@@ -122,22 +142,22 @@ fetch_wheel() {
   local name=$1 version=$2 hash=$3 members=$4 python work wheel
   shift 4
   [[ -e $deps/$name-$version ]] && return
-  [[ $may_install == yes ]] || die "$name $version is missing; ./dev without --no-install fetches it"
+  [[ $may_install == yes ]] || die "$(words not_fetched "$name $version")"
   python=$(python_with_pip) || exit
   work=$(mktemp -d "$deps/fetch.XXXXXX")
   if ! quiet "$python" -m pip download --disable-pip-version-check --no-deps \
     --only-binary=:all: "$@" --dest "$work" "$name==$version"; then
     rm -rf "$work"
-    say "could not download $name $version: is the package index reachable?"
+    say "$(words no_download "$name $version")"
     return 1
   fi
   wheel=$(echo "$work"/*.whl)
   if ! sha256sum --status -c <<<"$hash  $wheel"; then
     rm -rf "$work"
-    say "$name $version: the downloaded file is not the expected one (its SHA-256 differs)"
+    say "$(words other_file "$name $version")"
     return 1
   fi
-  (set -f && unzip -q "$wheel" $members -d "$work") || die "$name $version: cannot unpack the wheel"
+  (set -f && unzip -q "$wheel" $members -d "$work") || die "$(words not_unpacked "$name $version")"
   rm "$wheel"
   chmod 755 "$work"
   mv -T "$work" "$deps/$name-$version"
@@ -148,7 +168,7 @@ by_machine() {
   case $(uname -m) in
     x86_64) echo "$1" ;;
     aarch64 | arm64) echo "$2" ;;
-    *) die "no files for machines of type $(uname -m): x86_64 and aarch64 are supported" ;;
+    *) die "$(words other_machine "$(uname -m)")" ;;
   esac
 }
 
@@ -192,7 +212,8 @@ set_up_machine() {
   fi
   set_up_packages $packages
   if [[ -z ${MUJOCO_ROOT:-} && ! -e $mujoco ]]; then
-    step "MuJoCo 4.0.1: downloading" fetch_mujoco || exit
+    [[ $may_install == yes ]] || die "$(words not_fetched "MuJoCo 4.0.1")"
+    step "$(words fetching "MuJoCo 4.0.1")" fetch_mujoco || exit
   fi
 }
 
@@ -201,15 +222,19 @@ lacks_python() {
   [[ $1 == dev ]] && grep -qxF "MJARM_PYTHON:BOOL=OFF" "$root/build/$1/CMakeCache.txt" && [[ $(python_options) ]]
 }
 
-# configure PRESET: where that was not done.
+# Keeps in mind what build/PRESET was configured with.
+note_libraries() { optional_libraries >"$root/build/$1/.dev-libraries"; }
+
+# configure PRESET: where that was not done, or with other libraries.
 configure() {
   local preset=$1 folder=$root/build/$1 options=()
-  if [[ ! -e $folder/build.ninja ]] || lacks_python "$preset" ||
+  if [[ ! -e $folder/build.ninja ]] || lacks_python "$preset" || other_libraries "$preset" ||
     { [[ -n ${MUJOCO_ROOT:-} ]] && ! uses_mujoco_root "$preset"; }; then
     [[ $preset != dev && $preset != wheel ]] || mapfile -t options < <(python_options)
-    step "Configuring $preset" quiet cmake -S "$root" --preset "$preset" \
+    step "$(words configuring "$preset")" quiet cmake -S "$root" --preset "$preset" \
       -DMUJOCO_ROOT="${MUJOCO_ROOT:-$mujoco/mujoco}" "${options[@]}" ||
-      die "cmake could not configure the preset $preset"
+      die "$(words not_configured "$preset")"
+    note_libraries "$preset"
   fi
 }
 
@@ -218,8 +243,7 @@ build() {
   local preset=$1
   shift
   configure "$preset"
-  step "Building $preset" compile "$root/build/$preset" "$@" ||
-    die "the build of the preset $preset failed"
+  step "$(words building "$preset")" compile "$root/build/$preset" "$@" || die "$(words not_built "$preset")"
 }
 
 # Ninja's own lines go to stderr, so that stdout holds only results; off a terminal it is quiet.
