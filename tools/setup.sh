@@ -69,9 +69,9 @@ apt_install() {
   as_root apt-get install -y -qq --no-install-recommends "$@"
 }
 
-# Ends where a list cannot be fetched, which apt-get takes for a warning.
+# Fails where a list cannot be fetched, which apt-get takes for a warning.
 apt_update() {
-  step "$(words apt_update)" quiet as_root apt-get update -qq -o APT::Update::Error-Mode=any || die "$(words no_update)"
+  step "$(words apt_update)" quiet as_root apt-get update -qq -o APT::Update::Error-Mode=any
 }
 
 # How many MB apt-get would fetch to install PACKAGE...
@@ -102,10 +102,11 @@ install_line() {
 install_packages() {
   local wanted
   ((EUID == 0)) || { command -v sudo >/dev/null && sudo true; } || die "$(words needs_root "$(install_line "$@")")"
-  (($(available "$@" | wc -l) == $#)) || apt_update
+  (($(available "$@" | wc -l) == $#)) || apt_update || say "$(words no_update)"
   mapfile -t wanted < <(with_optional "$@")
   step "$(words apt_install ${#wanted[@]} "$(megabytes_of "${wanted[@]}")")" silent apt_install "${wanted[@]}" && return
-  apt_update  # the lists may be old
+  # The lists may be old; one that is out of reach may be somebody else's.
+  apt_update || { silent apt_install "${wanted[@]}" && return; } || die "$(words no_update)"
   step "$(words apt_again)" quiet apt_install "${wanted[@]}" || die "$(words no_install "$*")"
 }
 
