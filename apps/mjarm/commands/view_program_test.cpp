@@ -37,7 +37,7 @@ TEST(ViewProgram, RefusesWhatIsForModels) {
   EXPECT_EQ(app::mjarm({"view", "movej", "--size", "no"}).exit_code, 2);
 }
 
-TEST(ViewProgram, WithoutADisplayPointsAtRender) {
+TEST(ViewProgram, WithoutADisplaySaysWhatElseThereIs) {
   const auto result =
       app::mjarm({"view", "movej"}, {.environment = {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}}});
   EXPECT_EQ(result.exit_code, 1);

@@ -34,7 +34,7 @@ TEST(ViewCommand, RefusesWhatMakesNoSense) {
   refused({"view", "ur5e", "--camera", "nose"}, "nose");
 }
 
-TEST(ViewCommand, WithoutADisplayPointsAtRender) {
+TEST(ViewCommand, WithoutADisplaySaysWhatElseThereIs) {
   const support::ProgramResult result =
       mjarm_in({"view", "ur5e"}, {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}});
   EXPECT_EQ(result.exit_code, 1);
