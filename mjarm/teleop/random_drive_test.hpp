@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -110,8 +111,8 @@ class GraspingHand {
 
 /// Contacts that the arm should never have, by MuJoCo's own list and the tree of bodies: of links,
 /// hand and fingers with anything, but of fingers with bodies that have a free joint, and of the
-/// hand's parts with each other. What moves is nobody's fault: a thing that is let go over a hand
-/// that points upwards falls on it.
+/// hand's parts with each other. What moves is nobody's fault: a thing that is let go falls on a
+/// hand that points upwards, or on an upper arm, where it may come to rest and roll about.
 class ForbiddenContacts {
  public:
   explicit ForbiddenContacts(const Robot& robot)
@@ -130,10 +131,12 @@ class ForbiddenContacts {
     std::string out;
     for (const Contact& contact : sim.contacts()) {
       if (contact.depth <= 0 || contact.body1 < 0 || contact.body2 < 0) continue;
-      if (is_bad(contact.body1, contact.body2) || is_bad(contact.body2, contact.body1)) {
-        out = contact.first + " - " + contact.second;
-        break;
-      }
+      const std::pair pair(contact.body1, contact.body2);
+      if (!is_bad(pair.first, pair.second) && !is_bad(pair.second, pair.first)) continue;
+      const bool fell = moved_[static_cast<std::size_t>(pair.first)] ||
+                        moved_[static_cast<std::size_t>(pair.second)] || fallen_.contains(pair);
+      if (fell) fallen_.insert(pair);
+      if (!fell && out.empty()) out = contact.first + " - " + contact.second;
     }
     for (int b = 0; b < static_cast<int>(m_.nbody); ++b) {
       if (!is_free(b)) continue;
@@ -151,12 +154,13 @@ class ForbiddenContacts {
   bool is_bad(int body, int other) const {
     const auto b = static_cast<std::size_t>(body), o = static_cast<std::size_t>(other);
     if (!arm_[b] || (hand_[b] && hand_[o])) return false;
-    return !(is_free(other) && (finger_[b] || moved_[o]));
+    return !(finger_[b] && is_free(other));
   }
 
   static constexpr double kStill = 0.01;  // [m/s]
   const mjModel& m_;
-  std::vector<bool> moved_;  // in the period before
+  std::vector<bool> moved_;               // things in the period before
+  std::set<std::pair<int, int>> fallen_;  // contacts that began by something that moved
   std::vector<bool> arm_, hand_, finger_;
 };
 
@@ -179,7 +183,7 @@ inline DriveResult drive(const Robot& robot, const TeleopOptions& options, std::
   Result<Teleop> teleop = Teleop::create(robot, options);
   if (!teleop) throw std::runtime_error(teleop.error().what);
   std::optional<GraspingHand> hand;
-  ForbiddenContacts forbidden(robot);
+  std::optional<ForbiddenContacts> forbidden;
   DriveResult out;
   int near = 0, all = 0;
   Eigen::Vector3d p;
@@ -190,13 +194,14 @@ inline DriveResult drive(const Robot& robot, const TeleopOptions& options, std::
       sim.reset_home();
       sim.place(robot.arm, as_span(robot.arm.home));
       teleop->begin(sim);
+      forbidden.emplace(robot);
       hand.emplace(robot, seed + 1000 * static_cast<std::uint64_t>(before));
       p = sim.tool(robot.arm).p;
     }
     if (auto done = teleop->advance(sim, hand->at(sim)); !done) {
       throw std::runtime_error(done.error().what);
     }
-    out.contact = forbidden.first(sim);
+    out.contact = forbidden->first(sim);
     const TeleopState state = teleop->state();
     near += state.limit == TeleopLimit::near ? 1 : 0;
     out.held += state.held.empty() ? 0 : teleop->period();
