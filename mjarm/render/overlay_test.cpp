@@ -321,6 +321,15 @@ TEST(OverlayShapes, APlannedPathIsDashedOverItsLength) {
   EXPECT_LT(overlay.lines.at(0).width, 0.5 * TrailOptions{}.width) << "seen in what was done";
 }
 
+TEST(OverlayShapes, SeveralPlannedPathsShareTheirDashes) {
+  std::vector<std::vector<Pose>> paths(3, std::vector<Pose>(2));
+  for (std::size_t i = 0; i < 3; ++i) paths[i][1].p = {0.1 * static_cast<double>(i + 1), 0, 0};
+  Overlay overlay;
+  add_planned_paths(overlay, paths);
+  ASSERT_EQ(overlay.lines.size(), 3U);
+  for (const OverlayLine& line : overlay.lines) EXPECT_NEAR(line.dash, 0.6 / 120, 1e-12);
+}
+
 TEST(OverlayShapes, AGhostNamesTheJointsOfTheArm) {
   Arm arm;
   arm.joints.resize(2);

@@ -37,6 +37,16 @@ TEST(RunCharts, ErrorsAreSeenHoweverSmallTheyAre) {
   }
 }
 
+/// A gripper that closes has no ideal curve to be off.
+TEST(RunCharts, ErrorsAreThoseOfRunsWithACurve) {
+  const Curve line = Curve::line({}, {{1, 0, 0}, Eigen::Matrix3d::Identity()}).value();
+  std::vector<MeasuredRun> runs = {run_beside(line, 1e-4), run_beside(line, 1)};
+  runs[1].curve = nullptr;
+  const render::PlotPanel panel = error_panel(runs, 5e-4);
+  EXPECT_EQ(panel.lines.at(0).y.size(), 101U);
+  EXPECT_NEAR(std::ranges::max(panel.lines.at(0).y), 0.1, 1e-9);
+}
+
 /// Between two runs there is a gap in every curve.
 TEST(RunCharts, RunsAreNotJoined) {
   const Curve line = Curve::line({}, {{1, 0, 0}, Eigen::Matrix3d::Identity()}).value();
