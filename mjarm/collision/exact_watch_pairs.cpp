@@ -95,12 +95,8 @@ class WatchBuilder {
   void place(const std::vector<double>& qpos) {
     std::ranges::copy(qpos, d_->qpos);
     mj_kinematics(&m_, d_.get());
-    JointVec q(arm_.dof());
-    for (int k = 0; k < arm_.dof(); ++k) {
-      q[k] = qpos[static_cast<std::size_t>(arm_.joints[static_cast<std::size_t>(k)].qpos)];
-    }
     X_WJ_.resize(arm_.joints.size());
-    (void)fk_all(arm_, as_span(q), X_WJ_);
+    (void)fk_all(arm_, as_span(arm_positions(arm_, qpos)), X_WJ_);
   }
 
   bool collides(int geom) const { return m_.geom_contype[geom] != 0 || m_.geom_conaffinity[geom]; }

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "mjarm/planning/verify_region_internal.hpp"
 
@@ -25,9 +26,12 @@ bool goes_round(const Mechanism& mechanism) {
 
 }  // namespace
 
-double RegionWatch::spare(double value, const Pose& X_WT) const {
-  const RegionRoom room = room_in(standing_at(given_.region, value), X_WT);
+double RegionWatch::spare(const RegionRoom& room) const {
   return std::min(more_than(given_.room.place, room.place), more_than(given_.room.turn, room.turn));
+}
+
+double RegionWatch::spare(double value, const Pose& X_WT) const {
+  return spare(room_in(standing_at(given_.region, value), X_WT));
 }
 
 /// Where there is one best value between these, that one.
@@ -47,17 +51,22 @@ double RegionWatch::best_of_all(const Pose& X_WT) const {
   const Mechanism& mechanism = *given_.region.mechanism;
   const double step = (mechanism.max - mechanism.min) / kValues;
   const auto value = [&](int k) { return mechanism.min + std::clamp(k, 0, kValues) * step; };
-  const auto at = [&](int k) { return spare(value(k), X_WT); };
-  double best = mechanism.min, most = spare(best, X_WT);
+  std::vector<double> spares;
+  for (int k = 0; k <= kValues; ++k) spares.push_back(spare(value(k), X_WT));
+  const auto at = [&](int k) {
+    return spares[static_cast<std::size_t>(std::clamp(k, 0, kValues))];
+  };
+  double best = mechanism.min, most = at(0);
+  const auto offer = [&](double tried, double there) {
+    if (there <= most) return;
+    best = tried;
+    most = there;
+  };
   for (int k = 0; k <= kValues; ++k) {
-    const double here = at(k);
-    if (here < at(k - 1) || here < at(k + 1)) continue;
+    if (at(k) < at(k - 1) || at(k) < at(k + 1)) continue;
     const double refined = best_between(value(k - 1), value(k + 1), X_WT);
-    for (const double tried : {value(k), refined}) {
-      if (spare(tried, X_WT) <= most) continue;
-      best = tried;
-      most = spare(tried, X_WT);
-    }
+    offer(value(k), at(k));
+    offer(refined, spare(refined, X_WT));
   }
   return best;
 }
@@ -82,10 +91,7 @@ bool RegionWatch::follow(const Pose& X_WT) {
 RegionWatch::Found RegionWatch::look(const std::function<Pose(double)>& X_WT, double from,
                                      double to) {
   const Pose there = X_WT(to);
-  const auto enough = [&](const RegionRoom& room) {
-    return room.place >= given_.room.place - kRoomSlack &&
-           room.turn >= given_.room.turn - kRoomSlack;
-  };
+  const auto enough = [&](const RegionRoom& room) { return spare(room) >= -kRoomSlack; };
   if (!given_.region.mechanism) {
     const RegionRoom room = room_in(given_.region, there);
     return {.kept = enough(room), .room = room};

@@ -30,6 +30,7 @@ class RegionWatch {
   [[nodiscard]] Found look(const std::function<Pose(double)>& X_WT, double from, double to);
 
  private:
+  [[nodiscard]] double spare(const RegionRoom& room) const;
   [[nodiscard]] double spare(double value, const Pose& X_WT) const;
   [[nodiscard]] double best_between(double least, double most, const Pose& X_WT) const;
   [[nodiscard]] double best_of_all(const Pose& X_WT) const;
