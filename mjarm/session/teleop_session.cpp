@@ -242,6 +242,8 @@ std::string limit_words(const TeleopState& state) {
       return state.near ? text(msg::teleop_near, state.near->body1, state.near->body2,
                                1e3 * state.near->distance)
                         : std::string();
+    case TeleopLimit::pushed:
+      return text(msg::teleop_pushed);
   }
   return {};
 }

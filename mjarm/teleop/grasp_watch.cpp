@@ -21,6 +21,7 @@ GraspWatch::GraspWatch(const Robot& robot) {
   names_ = scene.name;
   for (std::size_t b = 0; b < scene.role.size(); ++b) {
     hand_.push_back(scene.role[b] == BodyRole::hand);
+    arm_.push_back(hand_.back() || scene.role[b] == BodyRole::link);
     const int object = scene.object_of[b];
     carried_.push_back(object < 0 ? -1 : scene.objects[static_cast<std::size_t>(object)].body);
   }
@@ -48,6 +49,16 @@ int GraspWatch::held(const Sim& sim, bool closing, int before) const {
     if (hands.size() > 1 && force > kHoldingForce) return object;
   }
   return -1;
+}
+
+bool GraspWatch::touches(const Sim& sim, int held) const {
+  const auto is_own = [&](int body) {
+    const auto b = static_cast<std::size_t>(body);
+    return body >= 0 && (arm_[b] || (held >= 0 && carried_[b] == held));
+  };
+  return std::ranges::any_of(sim.contacts(), [&](const Contact& contact) {
+    return is_own(contact.body1) != is_own(contact.body2);
+  });
 }
 
 std::string GraspWatch::name(int body) const {

@@ -24,6 +24,7 @@ constexpr double kLeastSingular = 0.1;  // of the speed asked for
 constexpr double kArmLength = 0.2;      // [m] that weighs as much as 1 rad
 constexpr double kStray = 2e-3;         // [m] off the way that is not made good any more
 constexpr double kRangeReserve = 1e-4;  // [rad or m] kept from the ends of joints' ranges
+constexpr double kPushed = 0.02;        // [rad or m] a joint is off its reference at most
 constexpr double kGripping = 0.02;      // command above which fingers may hold something
 
 /// What is not a number is nothing; longer than `max` is as long.
@@ -65,12 +66,6 @@ std::string_view name(TwistFrame frame) noexcept {
   return frame == TwistFrame::tool ? "tool" : "world";
 }
 
-std::string_view name(TeleopLimit limit) noexcept {
-  constexpr std::string_view kNames[] = {"none", "joint_range", "joint_speed", "singularity",
-                                         "near"};
-  return kNames[static_cast<std::size_t>(limit)];
-}
-
 struct Teleop::Impl {
   Impl(const Robot& robot, const TeleopOptions& chosen, int count, Controller with,
        std::optional<SceneWatch> guard)
@@ -106,6 +101,7 @@ struct Teleop::Impl {
     return std::isfinite(by) ? std::clamp(grip + std::clamp(by, -most, most), 0.0, 1.0) : grip;
   }
 
+  bool gives_way(const Sim& sim);
   WantedVelocity wanted(const TeleopInput& input);
   void follow_goal(const JointVec& q_before);
   bool range_allows(const JointVec& q1, const JointVec& stop, int& joint) const;
@@ -134,6 +130,21 @@ struct Teleop::Impl {
   TeleopState last;
   std::vector<double> ctrl;
 };
+
+/// An arm that meets something it may push stays behind, or fingers that open against something
+/// push it away. Then its reference stops at once, and comes after it where that is free; the
+/// gripper waits. So nothing presses ever harder, and the arm is not bent into itself.
+bool Teleop::Impl::gives_way(const Sim& sim) {
+  const JointVec here = sim.arm_state(arm).q, off = q - here;
+  if (off.cwiseAbs().maxCoeff() <= kPushed || !grasp.touches(sim, held)) return false;
+  v.setZero();
+  allowed = 0;
+  const JointVec after = here + off.cwiseMax(-kPushed).cwiseMin(kPushed);
+  if (watch) watch->take(sim.qpos(), q, held);
+  if (!watch || watch->check_way(after, after).free) q = after;
+  X_WT = fk(arm, as_span(q));
+  return true;
+}
 
 /// What Tracker makes of the input, slower near singularities. `twist` is then what the input asks
 /// for in this period, in the world frame: [m], below it [rad].
@@ -298,12 +309,14 @@ void Teleop::begin(Sim& sim) {
 
 Result<void> Teleop::advance(Sim& sim, const TeleopInput& input) {
   Impl& own = *impl_;
+  const bool pushed = own.gives_way(sim);
   if (own.arm.gripper) {
-    own.grip = own.next_grip(input);
+    if (!pushed) own.grip = own.next_grip(input);
     set_grip(*own.arm.gripper, own.grip, own.ctrl);
     own.held = own.grasp.held(sim, own.grip > kGripping, own.held);
   }
   own.plan(sim, input);
+  if (pushed) own.last.limit = TeleopLimit::pushed;
   const JointVec before = own.q;
   if (auto done = own.make_steps(sim, own.v_next); !done) return done;
   own.follow_goal(before);

@@ -56,9 +56,8 @@ enum class TeleopLimit {
   joint_speed,  ///< a joint is as fast as it may be
   singularity,  ///< TeleopOptions::near_singular
   near,         ///< it could not stop before something else
+  pushed,       ///< a thing that it touches keeps it 0.02 rad or 2 cm off where it is led
 };
-/// "none", "joint_range", "joint_speed", "singularity" or "near".
-[[nodiscard]] std::string_view name(TeleopLimit limit) noexcept;
 
 /// How it goes, after a period.
 struct TeleopState {
@@ -86,9 +85,10 @@ struct TeleopMoment {
 /// space with every joint's braking, within the ranges of the joints and, by SceneWatch, away from
 /// everything. Else it is slower, at the least as slow as braking makes it, which was proved in the
 /// period before: so the arm never touches anything that stands, as long as it follows its
-/// reference (SceneWatch::take() allows for what it is off). What is proved of a stop is known
-/// from failsafe manoeuvres of vehicles (S. Petti and T. Fraichard, IROS 2005).
-/// The same inputs give the same simulation, to the last bit.
+/// reference (SceneWatch::take() allows for what it is off). Where a thing that it pushes keeps it
+/// off by 0.02 rad or 2 cm, the reference stops and comes after it where that is free, and the
+/// gripper waits. What is proved of a stop is known from failsafe manoeuvres of vehicles (S. Petti
+/// and T. Fraichard, IROS 2005). The same inputs give the same simulation, to the last bit.
 class Teleop {
  public:
   /// @return bad_input for options out of range; not_available where the arm's actuators cannot be

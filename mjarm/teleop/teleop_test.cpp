@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/fk.hpp"
@@ -40,7 +43,26 @@ struct Led {
     }
     lead({.grip = grip}, 0.2);
   }
+  void point_down() {
+    Eigen::Matrix3d down;
+    down << 1, 0, 0, 0, -1, 0, 0, 0, -1;
+    for (int i = 0; i < 1000; ++i) {
+      const Eigen::Vector3d turn = rotation_log(down * tool().R.transpose());
+      if (turn.norm() < 2e-3) break;
+      ASSERT_TRUE(teleop.advance(sim, {.angular = 3 * turn}));
+    }
+  }
   [[nodiscard]] Pose tool() const { return sim.tool(robot.arm); }
+  [[nodiscard]] Eigen::Vector3d place_of(const std::string& object) const {
+    for (const SceneObject& one : scene_bodies(robot.model, robot.arm).objects) {
+      if (one.name == object) return sim.body_pose(one.body).p;
+    }
+    throw std::runtime_error("no " + object);
+  }
+  /// [rad] The most that a joint is off its reference.
+  [[nodiscard]] double off() const {
+    return (sim.arm_state(robot.arm).q - teleop.reference()).cwiseAbs().maxCoeff();
+  }
 
   Robot robot;
   Sim sim;
@@ -87,20 +109,8 @@ TEST(TeleopGuard, StopsAboveTheTableAndSaysSo) {
 TEST(TeleopGuard, WhatIsGrippedComesAlong) {
   Led led(kPandaPick);
   const Eigen::Vector3d box(0.42, 0.1, 0.23);
-  const auto p_box = [&] {
-    for (const SceneObject& object : scene_bodies(led.robot.model, led.robot.arm).objects) {
-      if (object.name == "box") return led.sim.body_pose(object.body).p;
-    }
-    return Eigen::Vector3d(0, 0, 0);
-  };
-  // The tool does not point straight down at home.
-  for (int i = 0; i < 1000; ++i) {
-    Eigen::Matrix3d down;
-    down << 1, 0, 0, 0, -1, 0, 0, 0, -1;
-    const Eigen::Vector3d turn = rotation_log(down * led.tool().R.transpose());
-    if (turn.norm() < 2e-3) break;
-    ASSERT_TRUE(led.teleop.advance(led.sim, {.angular = 3 * turn}));
-  }
+  const auto p_box = [&] { return led.place_of("box"); };
+  led.point_down();
   led.lead_to(box + Eigen::Vector3d(0, 0, 0.1));
   led.lead_to(box);
   EXPECT_EQ(led.teleop.state().held, "");
@@ -118,6 +128,30 @@ TEST(TeleopGuard, WhatIsGrippedComesAlong) {
   led.lead({.grip = -2}, 1);
   EXPECT_EQ(led.teleop.state().held, "");
   EXPECT_NEAR(p_box().z(), 0.23, 1e-3);
+}
+
+// Neither an arm that is led onto a can nor fingers that open against it press ever harder.
+TEST(TeleopGuard, GivesWayToWhatItPushes) {
+  Led led(kUr5ePick);
+  led.point_down();
+  const Eigen::Vector3d can = led.place_of("can");
+  led.lead_to(can + Eigen::Vector3d(0, 0, 0.15), 2);
+  double most = 0;
+  bool pushed = false;
+  const auto press = [&](const TeleopInput& input) {
+    for (int i = 0; i < 500; ++i) {
+      ASSERT_TRUE(led.teleop.advance(led.sim, input));
+      most = std::max(most, led.off());
+      pushed |= led.teleop.state().limit == TeleopLimit::pushed;
+    }
+  };
+  press({.linear = {0, 0, -0.25}});
+  press({.grip = -2});
+  EXPECT_TRUE(pushed);
+  EXPECT_LT(most, 0.03);
+  const double before = led.tool().p.z();
+  led.lead({.linear = {0, 0, 0.1}}, 1.5);
+  EXPECT_GT(led.tool().p.z(), before + 0.07) << "and it can be led away";
 }
 
 TEST(Teleop, LeadsStraightInBothFrames) {
