@@ -95,7 +95,7 @@ unpack_zip() {
   unzip -q "$root"/dist/mjarm-*-windows-*.zip -d "$tried" && mv -T "$tried"/mjarm-*/ "$unpacked"
 }
 
-# The tests of rooms that need no window.
+# The tests of rooms that open no window; perception and episode draw into a hidden one.
 room_tests() {
   local room=$1
   (build_windows mjarm "${room}_test") &&
@@ -119,7 +119,8 @@ try_windows() {
   check "wine: run" same_run run table
   check "wine: model of somebody, Chinese path" unknown_model
   check "wine: a window" opens_a_window
-  for room in core model kinematics collision path trajectory control identification teleop clone; do
+  for room in core model kinematics collision path planning trajectory control identification sim execution program \
+    perception rl episode teleop clone; do
     check "wine: tests of $room" room_tests "$room"
   done
   stop_wine

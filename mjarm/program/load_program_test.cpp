@@ -44,7 +44,7 @@ TEST(LoadProgram, ShippedOnesAreKnownByName) {
   for (const char* name : {"ellipse", "ellipse.yaml"}) {
     const auto file = find_program_file(name);
     ASSERT_TRUE(file) << file.error().what;
-    EXPECT_THAT(file->string(), EndsWith("programs/ellipse.yaml"));
+    EXPECT_THAT(file->generic_string(), EndsWith("programs/ellipse.yaml"));
     EXPECT_EQ(*file, find_shipped_program(name).value());
   }
   const auto unknown = load_program("elipse");

@@ -167,7 +167,7 @@ std::vector<ProgramFault> faults_of(const std::string& instructions) {
   const support::TempFolder folder;
   const auto file =
       folder.write("one.yaml", "scene: universal_robots_ur5e/pick.xml\nprogram:\n" + instructions);
-  auto loaded = load_program(file);
+  auto loaded = load_program(file.string());
   EXPECT_TRUE(loaded) << (loaded ? "" : loaded.error().what);
   return loaded ? std::move(loaded->plan.faults) : std::vector<ProgramFault>();
 }

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <map>
+#include <numbers>
 
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/fk.hpp"
@@ -165,8 +166,8 @@ TEST(ProgramSettings, FramesOnlyChangeTheNumbers) {
     for (int i = 0; i < 9; ++i) matrix[i] = X.R(i / 3, i % 3);
     return "{pos: " + numbers(X.p) + ", matrix: " + numbers(matrix) + more + "}";
   };
-  const Pose targets[] = {{{0.1, -0.4, 0.4}, from_euler({M_PI, 0, 0})},
-                          {{-0.1, -0.5, 0.35}, from_euler({M_PI, 0.1, 0.2})}};
+  const Pose targets[] = {{{0.1, -0.4, 0.4}, from_euler({std::numbers::pi, 0, 0})},
+                          {{-0.1, -0.5, 0.35}, from_euler({std::numbers::pi, 0.1, 0.2})}};
   const auto moves = [&](const Pose& X_WF, const std::string& more) {
     return "  - movej: " + pose(X_WF.inverse() * targets[0], more) +
            "\n  - movel: " + pose(X_WF.inverse() * targets[1], more) + "\n";
@@ -179,7 +180,7 @@ TEST(ProgramSettings, FramesOnlyChangeTheNumbers) {
   expect_equal_plans(world, planned(moves(X_WA * X_AB, ""), "frame: b\n" + frames));
   expect_equal_plans(world, planned("  - set: {frame: b}\n" + moves({}, ", frame: world"), frames));
   // A body that stands still is a frame as well; the arm's base is turned by half a turn.
-  const Pose X_WBase{{0, 0, 0}, from_euler({0, 0, M_PI})};
+  const Pose X_WBase{{0, 0, 0}, from_euler({0, 0, std::numbers::pi})};
   expect_equal_plans(world, planned(moves(X_WBase, ", frame: base"), frames));
 }
 
@@ -254,7 +255,7 @@ TEST(ProgramSettings, CharactersAreWrittenInSmoothStrokesOnceTheyAreInstalled) {
   const char* before = std::getenv("XDG_DATA_HOME");
   const std::string kept = before != nullptr ? before : "";
   const support::TempFolder folder;
-  ::setenv("XDG_DATA_HOME", folder.path().c_str(), 1);
+  ::setenv("XDG_DATA_HOME", folder.path().string().c_str(), 1);
   const std::string sentence =
       "  - text: {text: \"上I\", pos: [-0.05, -0.45, 0.3], right: [0, 1, 0], up: [-1, 0, 0], "
       "height: 60mm, lift: 15mm, euler: [180deg, 0, 0]}\n";

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -214,7 +215,7 @@ class UrCheck {
     const Eigen::Vector3d x = a - center, y = n.normalized().cross(x);
     const auto angle = [&](const Eigen::Vector3d& p) {
       const double t = std::atan2((p - center).dot(y), (p - center).dot(x));
-      return t < 0 ? t + 2 * M_PI : t;
+      return t < 0 ? t + 2 * std::numbers::pi : t;
     };
     if (angle(b) > angle(c)) note("via is beyond the end");
     for (int i = 0; i <= 100; ++i) {

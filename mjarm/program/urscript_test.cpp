@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
+#include <numbers>
 
 #include "mjarm/model/find_arm.hpp"
 #include "mjarm/program/program_reader.hpp"
@@ -143,7 +144,7 @@ TEST(Urscript, PosesAreInTheControllersBaseWhereverTheArmStands) {
       "  - movel: {pos: [-0.1, 0.45, 0.4], euler: [180deg, 0, 0]}\n",
       "robot: " + urdf + "\n");
   ASSERT_TRUE(turned.text.has_value()) << turned.text.error().what;
-  const Pose half{{0, 0, 0}, from_euler({0, 0, M_PI})};
+  const Pose half{{0, 0, 0}, from_euler({0, 0, std::numbers::pi})};
   EXPECT_THAT(UrCheck(turned.script(), turned.plan, half).problems(), IsEmpty());
   EXPECT_NEAR(turned.script().statements.back().lists[0][0], 0.1, 1e-9);
   EXPECT_THAT(UrCheck(turned.script(), turned.plan).problems(), ::testing::Not(IsEmpty()));
@@ -171,8 +172,8 @@ TEST(Urscript, PosesAreInTheControllersBaseWhereverTheArmStands) {
   ASSERT_TRUE(plan.ok()) << plan.faults.front().what;
   const Result<std::string> text = to_urscript(program, robot, plan);
   ASSERT_TRUE(text.has_value()) << text.error().what;
-  const Eigen::Matrix3d R = (Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitX()) *
-                             Eigen::AngleAxisd(M_PI / 6, Eigen::Vector3d::UnitZ()))
+  const Eigen::Matrix3d R = (Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitX()) *
+                             Eigen::AngleAxisd(std::numbers::pi / 6, Eigen::Vector3d::UnitZ()))
                                 .toRotationMatrix();
   EXPECT_THAT(UrCheck(UrReader::read(*text), plan, {{0.3, 0.2, 1}, R}).problems(), IsEmpty());
 }

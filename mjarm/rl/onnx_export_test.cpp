@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -108,8 +109,9 @@ TEST(OnnxExport, HasTheStructureThatOnnxWants) {
   EXPECT_EQ(only(only(bytes, 8).bytes, 2).integer, 17u);
   const auto graph = only(bytes, 7).bytes;
   EXPECT_FALSE(only(graph, 2).bytes.empty());
-  EXPECT_EQ(port_of(only(graph, 11).bytes), std::pair(std::string("observation"), 5ul));
-  EXPECT_EQ(port_of(only(graph, 12).bytes), std::pair(std::string("action"), 2ul));
+  EXPECT_EQ(port_of(only(graph, 11).bytes),
+            std::pair(std::string("observation"), std::uint64_t{5}));
+  EXPECT_EQ(port_of(only(graph, 12).bytes), std::pair(std::string("action"), std::uint64_t{2}));
 
   std::map<std::string, std::vector<float>> constants;
   for (const auto& tensor : all_of(graph, 5)) {
@@ -182,6 +184,7 @@ std::optional<std::filesystem::path> python_with_onnxruntime() {
 }
 
 TEST(OnnxExport, ActsTheSameInOnnxruntime) {
+  if (!support::kStartsPrograms) GTEST_SKIP() << "tests start no programs on Windows so far";
   const auto python = python_with_onnxruntime();
   if (!python) {
     GTEST_SKIP() << "needs a Python with onnx and onnxruntime: MJARM_TEST_PYTHON names none, and "

@@ -25,6 +25,12 @@ struct ProgramResult {
   std::size_t peak_memory = 0;  ///< [bytes] resident, of it or of the largest of its children
 };
 
+#if defined(_WIN32)
+inline constexpr bool kStartsPrograms = false;  // not written so far
+#else
+inline constexpr bool kStartsPrograms = true;
+#endif
+
 /// Runs a program with its arguments and waits for its end.
 /// @throws std::runtime_error where it cannot be started.
 [[nodiscard]] ProgramResult run_program(const std::filesystem::path& program,
