@@ -90,13 +90,13 @@ test_wheel() {
 }
 
 # check_types: judges the types of the installed wheel, as an editor does that is set to be strict. The programs of the learning
-# path use mujoco, which has no types to judge.
+# path, which the wheel holds in share, use mujoco, which has no types to judge.
 check_types() {
   local tests site
   python_environment test && tests=$environment && python_environment check || return
   site=$("$tests/bin/python" -c 'import sysconfig; print(sysconfig.get_paths()["purelib"])')/mjarm
   "$environment/bin/basedpyright" --project "$root/python/tests/pyrightconfig.json" --pythonpath "$tests/bin/python" \
-    "$site" "$root"/python/examples/*.py >&2
+    "$site"/{*.py,*.pyi,data} "$root"/python/examples/*.py >&2
 }
 
 # check_abi FOLDER: the wheel for many versions of Python calls nothing that one of them lacks.
