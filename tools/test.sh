@@ -242,6 +242,7 @@ run_arms() {
       "$root/build/dev/bin/whole_test" --gtest_filter='*TwelveArms*'
   fi
   ((failed || $#)) || run_ssik_arms
+  ((failed || $#)) || run_refusals
   ((failed)) || run_menagerie "$@"
   finish
 }
@@ -252,6 +253,12 @@ run_ssik_arms() {
   "$python" -c 'import ssik' 2>/dev/null || { skipped=$((skipped + 1)) && echo "SKIPPED: arms of ssik: ./dev peers installs it"; return; }
   say "check: arms of ssik ..."
   count_lines "arms of ssik" "$python" -B "$root/tools/ssik_arms.py" --program "$root/build/dev/bin/mjarm"
+}
+
+# What was once refused wrongly or answered slowly, beside its old figure; adds to the counts.
+run_refusals() {
+  say "check: what was refused once ..."
+  count_lines "what was refused once" python3 -B "$root/tools/refusals.py" --program "$root/build/dev/bin/mjarm" --peers "$root/.venv-near"
 }
 
 # run_menagerie [ROBOT...]: every serial arm of Menagerie, or those; adds to the counts.

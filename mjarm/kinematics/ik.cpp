@@ -70,12 +70,14 @@ Result<IkSolution, IkFailure> solve_six(const IkSolver& ik, const IkGoal& goal) 
 }
 
 /// True where a form of seven axes may have missed an answer: it came near to the limits, between
-/// two samples, or took one configuration for a whole family, a singular one.
+/// two samples, or took one configuration for a whole family, where the tool can rest while the
+/// last joint does not move: at singularities of the other six, such as a straight shoulder.
 bool is_doubtful(const IkSolver& ik, const Branches& branches, const IkFailure& failure) noexcept {
   if (!branches.complete) return true;
   if (failure.code != IkErrc::joint_limit) return false;
   if (failure.amount < kNearLimits) return true;
-  return smallest_singular_value(fk_jacobian(ik.links(), {branches.q[0], 7}).J_W) < kSingular;
+  const Jacobian six = fk_jacobian(ik.links(), {branches.q[0], 7}).J_W.leftCols(6);
+  return smallest_singular_value(six) < kSingular;
 }
 
 /// Likewise for seven axes: the answer nearest to the seed, or, where that is refused, the nearest

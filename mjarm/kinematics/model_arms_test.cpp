@@ -69,6 +69,31 @@ TEST(ModelArms, FkAndJacobianAreMujocosOnTheShippedArms) {
   }
 }
 
+/// Where the shoulder is straight, joints 1 and 3 have nothing to keep but their sum, while the
+/// last joint rests; where elbow and wrist stand at stops as well, nothing else is left to move.
+TEST(ModelArms, AStraightShoulderOfThePandaIsReachedWithOtherJointsAtStops) {
+  const Arm arm = load(find_model_file("panda").value()).arm;
+  const IkSolver ik(arm);
+  Rng rng(92);
+  for (int round = 0; round < 400; ++round) {
+    JointVec q = testing::random_q(arm, rng);
+    q[1] = 0;
+    for (const int i : {0, 2, 4, 6}) {
+      const double side = rng.uniform();
+      q[i] = side < 0.3 ? 0 : side < 0.65 ? arm.limits.lower[i] : arm.limits.upper[i];
+    }
+    q[3] = arm.limits.lower[3];
+    q[5] = rng.uniform() < 0.8 ? arm.limits.upper[5] : arm.limits.lower[5];
+    const Pose X_WT = fk(arm, as_span(q));
+    const auto answer = ik.solve(X_WT, as_span(testing::random_q(arm, rng)));
+    ASSERT_TRUE(answer) << describe(answer.error(), arm) << " at\n" << q.transpose();
+    const Pose X = fk(arm, as_span(answer->q));
+    EXPECT_LT((X.p - X_WT.p).norm(), 1.01e-7);
+    EXPECT_LT(angle_between(X.R, X_WT.R), 1.01e-7);
+    EXPECT_TRUE(within_limits(arm, as_span(answer->q)));
+  }
+}
+
 TEST(ModelArms, Ur5eStandsWhereTheControllerHasIt) {
   const Loaded robot = load(find_model_file("ur5e").value());
   const Pose home = fk(robot.arm, as_span(robot.arm.home));
