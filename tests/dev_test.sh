@@ -23,7 +23,7 @@ cp "$source_dir"/tools/*.sh "$work/mjarm/tools/"
 cd "$work/mjarm"
 mkdir -p apps cmake mjarm .deps/mujoco-core-4.0.1
 touch CMakeLists.txt CMakePresets.json
-printf '#!/bin/sh\necho "in $PWD:" "$@"\nexit 3\n' >build/release/bin/mjarm
+printf '#!/bin/sh\necho "in $PWD:" "$@"\necho "called as $MJARM_CALLED_AS" >&2\nexit 3\n' >build/release/bin/mjarm
 chmod +x build/release/bin/mjarm
 touch build/release/.dev-built-mjarm
 note_libraries() { (shopt -s nullglob && echo /usr/include/{ompl*,apriltag,benchmark}/) >"$work/mjarm/build/release/.dev-libraries"; }
@@ -33,8 +33,9 @@ cd "$work/elsewhere"
 
 unset MUJOCO_ROOT
 code=0
-answer=$("$work/bin/dev-link" fk "a b" --x) || code=$?
+answer=$("$work/bin/dev-link" fk "a b" --x 2>"$work/said") || code=$?
 [[ $answer == "in $work/elsewhere: fk a b --x" ]] || fail "arguments or directory: $answer"
+[[ $(<"$work/said") == "called as $work/bin/dev-link" ]] || fail "the name that hints give: $(<"$work/said")"
 [[ $code == 3 ]] || fail "the exit code of the program is lost: $code"
 
 # A machine without packages: reported, not changed.
@@ -61,7 +62,7 @@ grep -q '缺少系统软件包：.*libeigen3-dev' <<<"$answer" || fail "in Chine
 # A library that is built in where it is found came since: looked at anew, though no source has changed.
 rm "$work/mjarm/mjarm/new.cpp"
 touch "$work/mjarm/build/release/.dev-built-mjarm"
-answer=$("$work/mjarm/dev" fk) || true
+answer=$("$work/mjarm/dev" fk 2>/dev/null) || true
 [[ $answer == *": fk" ]] || fail "up to date, but: $answer"
 echo others >"$work/mjarm/build/release/.dev-libraries"
 answer=$(PATH="$work/bin:$PATH" "$work/mjarm/dev" --no-install fk 2>&1) || true

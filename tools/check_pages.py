@@ -6,7 +6,7 @@ Each page has a folder of its own, empty for those of docs/learn; else with the 
 of python one process. `./dev ARGS` is `mjarm ARGS` here. A block of text that follows at once quotes what was printed: its lines in their order, `...`
 for anything left out, numbers within 1 % or one unit of their last digit. A command may end with another exit code than 0 where a line of what it printed is
 quoted, or where it says so: `# exit code 1` (in a row of a table, `<!-- exit code 1 -->`). Before a block, `<!-- not run: REASON -->` leaves it out and
-`<!-- up to 300 s -->` gives it more time.
+`<!-- up to 300 s -->`, in a row of a table too, gives it more time.
 --tables: the commands in the cells of tables as well. Both languages of a page have to run the same. The last line counts.
 """
 
@@ -71,6 +71,7 @@ class Command:
     line: int
     text: str
     skip: str = ""
+    seconds: float = 0       # its own limit, or 0
     printed: list[str] = dataclasses.field(default_factory=list)
     code: int = 0
     quoted: bool = False
@@ -130,7 +131,9 @@ def table_commands(text):
         if line.startswith("|"):
             for code in re.findall(r"`((?:\./dev|mjarm) [^`]+)`", line):
                 said = re.search(r"<!-- (exit code \d+) -->", line)
-                found.setdefault(code, Command(number, f"{code}  # {said.group(1)}" if said else code, reason_to_skip(code) or reason_in_table(code)))
+                more = re.search(r"<!-- up to (\d+) s -->", line)
+                found.setdefault(code, Command(number, f"{code}  # {said.group(1)}" if said else code, reason_to_skip(code) or reason_in_table(code),
+                                               float(more.group(1)) if more else 0))
     return list(found.values())
 
 
@@ -265,7 +268,7 @@ def nearest(line, printed):
 
 
 def same_python(one, other):
-    """True where two programs differ in comments, in their language and in words with Chinese in the other one alone."""
+    """True where two programs differ in comments, in their language ("en" and "zh") and in words with Chinese in the other one alone."""
     try:
         trees = [ast.parse("\n".join(line for line in block.lines if "set_language(" not in line)) for block in (one, other)]
     except SyntaxError:
@@ -276,7 +279,7 @@ def same_python(one, other):
                 node.values = sorted((part for part in node.values if not isinstance(part, ast.Constant)), key=ast.dump)
     pairs = list(zip(*([n for n in ast.walk(tree) if isinstance(n, ast.Constant) and isinstance(n.value, str)] for tree in trees)))
     for a, b in pairs:
-        if CHINESE.search(b.value):
+        if CHINESE.search(b.value) or (a.value, b.value) == ("en", "zh"):
             a.value = b.value = ""
     return ast.dump(trees[0]) == ast.dump(trees[1])
 
@@ -348,7 +351,7 @@ class Checker:
         """Where its commands run."""
         folder = work / "run"
         folder.mkdir()
-        (folder / "dev").write_text("#!/bin/sh\nexec mjarm \"$@\"\n")
+        (folder / "dev").write_text("#!/bin/sh\nMJARM_CALLED_AS=$0 exec mjarm \"$@\"\n")
         (folder / "dev").chmod(0o755)
         if "learn" not in page.parts:
             for entry in self.root.iterdir():
@@ -431,9 +434,10 @@ class Checker:
         for command in table_commands(text):
             if not command.skip and command.text in known:
                 command.skip = f"as in {twin.name}"
+            seconds = command.seconds or self.options.seconds
             if not command.skip:
-                command.printed, command.code = shell.run(page.name, command.text, self.options.seconds)
-            self.judge(page, command, self.options.seconds)
+                command.printed, command.code = shell.run(page.name, command.text, seconds)
+            self.judge(page, command, seconds)
 
 
 def main():

@@ -125,6 +125,8 @@ class CheckPagesTest(unittest.TestCase):
         self.assert_counts(text, "0 passed, 0 failed, 0 skipped")
         self.assert_counts(text, "2 passed, 1 failed, 2 skipped", options=["--tables"])
         self.assert_counts("| `mjarm ik` | <!-- exit code 1 --> |\n| `mjarm fk` | <!-- exit code 1 --> |\n", "1 passed, 1 failed, 0 skipped", options=["--tables"])
+        for seconds, counts in ((1, "0 passed, 1 failed, 0 skipped"), (30, "1 passed, 0 failed, 0 skipped")):
+            self.assert_counts(f"| `mjarm fk && sleep 2` <!-- up to {seconds} s --> |\n", counts, options=["--tables"])
 
     def test_the_reader_has_no_display_and_a_language(self):
         text = "```sh\nmjarm say\n```\n```text\n{} no display\n```\n"
@@ -135,6 +137,9 @@ class CheckPagesTest(unittest.TestCase):
         text = "```sh\nmjarm say hello  # greet\n```\n```python\n# one\nprint(f\"{1 + 1} points\", 'x')\n```\n"
         good = "```sh\nmjarm say 你好  # 问好\n```\n```python\nprint(f\"共 {1 + 1} 个点\", 'x')\n```\n"
         own = good.replace("```python\n", "```python\nmjarm.set_language('zh')\n").replace("你好", "你好 --lang zh-CN")
+        keyed = "```python\nprint(about['{}'])\n```\n"
+        self.assertIsNone(check_pages.twin_fault(self.write("docs/c.md", keyed.format("en")), self.write("docs/c.zh-CN.md", keyed.format("zh"))))
+        self.assertIsNotNone(check_pages.twin_fault(self.write("docs/c.md", keyed.format("en")), self.write("docs/c.zh-CN.md", keyed.format("de"))))
         self.assertIsNone(check_pages.twin_fault(self.write("docs/b.md", text), self.write("docs/b.zh-CN.md", own)))
         for other, failed in ((good, 0), (good.replace("1 + 1", "1 + 2"), 1), (good.replace("'x'", "'y'"), 1), (good.replace("say", "fk"), 1),
                               ("```sh\nmjarm say 你好\n```\n", 1), (good.replace("```python", "```sh\nmjarm fk\n```\n```python"), 1)):

@@ -32,7 +32,7 @@ std::optional<double> noted_work(const fs::path& path) {
 }  // namespace
 
 double WorkClock::seconds() const noexcept {
-  return std::min(1e-6 * watch_.us(), cpu_seconds() - cpu_begin_);
+  return std::min(1e-6 * watch_.us(), busy_seconds() - begin_);
 }
 
 Result<LongResult> LongResult::begin(const fs::path& path, const Replace& replace) {

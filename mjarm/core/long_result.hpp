@@ -12,13 +12,13 @@ namespace mjarm {
 /// How much work something takes, from when this is made.
 class WorkClock {
  public:
-  /// [s] Time in which the process only waited, for others or for its user, is none of it; nor are
-  /// several threads at once more than one.
+  /// [s] Time in which the process only waited, for others or for its user, is none of it, but for
+  /// a core of a busy machine; nor are several threads at once more than one.
   [[nodiscard]] double seconds() const noexcept;
 
  private:
   Stopwatch watch_;
-  double cpu_begin_ = cpu_seconds();
+  double begin_ = busy_seconds();
 };
 
 /// What becomes of an earlier result. To be made where the work for the new one begins.

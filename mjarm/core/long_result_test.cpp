@@ -2,7 +2,11 @@
 
 #include <gmock/gmock.h>
 #if !defined(_WIN32)
+#include <sched.h>
+#include <sys/wait.h>
 #include <unistd.h>
+
+#include <csignal>
 #endif
 
 #include <string>
@@ -102,6 +106,39 @@ TEST(WorkClock, CountsNoTimeOfWaiting) {
   }
   EXPECT_LE(clock.seconds(), 1e-6 * watch.us());
 }
+
+#if defined(__linux__)
+/// On a busy machine the user waits as long, whoever has the core.
+TEST(WorkClock, CountsTheTimeInWhichOthersHaveTheCore) {
+  cpu_set_t before, one;
+  CPU_ZERO(&one);
+  ASSERT_EQ(sched_getaffinity(0, sizeof before, &before), 0);
+  for (int core = 0; CPU_COUNT(&one) == 0; ++core) {
+    if (CPU_ISSET(core, &before)) CPU_SET(core, &one);
+  }
+  ASSERT_EQ(sched_setaffinity(0, sizeof one, &one), 0);
+  const pid_t other = fork();
+  if (other == 0) {
+    for (;;) {
+    }
+  }
+  const WorkClock clock;
+  const Stopwatch watch;
+  const double cpu = cpu_seconds(), busy = busy_seconds();
+  while (watch.us() < 600'000) {
+  }
+  const double seconds = 1e-6 * watch.us(), used = cpu_seconds() - cpu;
+  const double both = busy_seconds() - busy, counted = clock.seconds();
+  kill(other, SIGKILL);
+  waitpid(other, nullptr, 0);
+  EXPECT_EQ(sched_setaffinity(0, sizeof before, &before), 0);
+  if (both < used + 0.01)
+    GTEST_SKIP() << "the system does not tell how long a process waits for a core";
+  EXPECT_LT(used, 0.8 * seconds);
+  EXPECT_GT(counted, 0.9 * seconds);
+  EXPECT_LE(counted, seconds + 0.05);
+}
+#endif
 
 }  // namespace
 }  // namespace mjarm

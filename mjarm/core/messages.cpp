@@ -8,6 +8,7 @@
 
 #include "mjarm/core/language_scope.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/core/program_name.hpp"
 
 namespace mjarm {
 namespace {
@@ -35,15 +36,15 @@ Language language_of(std::string_view name) noexcept {
 Language language_of_locale() { return language_of(locale_name()); }
 
 std::string format_message(Msg message, std::initializer_list<MsgArg> args) {
-  const std::string_view pattern = message.in(language());
+  const std::string pattern = with_program_name(message.in(language()));
   fmt::dynamic_format_arg_store<fmt::format_context> store;
   for (const MsgArg& arg : args) {
     std::visit([&store](const auto& value) { store.push_back(value); }, arg);
   }
   try {
-    return fmt::vformat(fmt::string_view(pattern.data(), pattern.size()), store);
+    return fmt::vformat(pattern, store);
   } catch (const fmt::format_error&) {
-    return std::string(pattern);  // a message with its braces is better than none
+    return pattern;  // a message with its braces is better than none
   }
 }
 

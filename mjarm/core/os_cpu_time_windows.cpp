@@ -14,4 +14,6 @@ double cpu_seconds() noexcept {
   return seconds(kernel) + seconds(user);
 }
 
+double busy_seconds() noexcept { return cpu_seconds(); }
+
 }  // namespace mjarm

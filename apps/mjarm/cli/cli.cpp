@@ -17,6 +17,7 @@
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/os_program.hpp"
+#include "mjarm/core/program_name.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -48,6 +49,17 @@ Result<void> choose_language(const std::vector<std::string>& arguments) {
   }
   set_language(chinese ? Language::chinese : Language::english);
   return {};
+}
+
+/// ./dev says by the environment that it is what the user typed.
+void choose_program_name() {
+  const std::optional<std::string> name = environment("MJARM_CALLED_AS");
+  if (!name || name->empty()) return;
+  set_program_name(*name, {
+#define MJARM_COMMAND(name) #name,
+#include "apps/mjarm/commands/commands.inc"
+#undef MJARM_COMMAND
+                              "bench", "COMMAND", "命令", "--help"});
 }
 
 /// A value such as `-.5` begins like a short option; `-0.5` does not.
@@ -119,6 +131,7 @@ int run_parsed(const CLI::App& app, const GlobalOptions& global,
 }
 
 int run_guarded(std::span<const Command> commands, const std::vector<std::string>& arguments) {
+  choose_program_name();
   if (const Result<void> chosen = choose_language(arguments); !chosen) {
     return report(chosen.error());
   }
@@ -126,7 +139,7 @@ int run_guarded(std::span<const Command> commands, const std::vector<std::string
     return report(go_on(*other, arguments));
   }
   catch_interrupts();
-  const AppPtr app = make_program("mjarm", msg::app_summary, msg::app_examples);
+  const AppPtr app = make_program(program_name(), msg::app_summary, msg::app_examples);
   GlobalOptions global;
   add_global_options(*app, global);
   std::vector<std::pair<const CLI::App*, Run>> runs;

@@ -59,6 +59,20 @@ TEST(CommandLine, LanguageComesFromTheOptionElseTheLocale) {
   EXPECT_NE(only_line(unknown).find("did you mean \"zh-CN\"?"), std::string::npos);
 }
 
+TEST(CommandLine, HintsNameWhatTheUserTyped) {
+  support::RunOptions by_dev;
+  by_dev.environment = {{"MJARM_CALLED_AS", "./dev"}};
+  const auto help = mjarm({"demo", "--help"}, by_dev);
+  EXPECT_NE(help.out.find("Usage: ./dev demo "), std::string::npos) << help.out;
+  EXPECT_NE(help.out.find("\n  ./dev demo ellipse\n"), std::string::npos) << help.out;
+  EXPECT_EQ(help.out.find("mjarm demo"), std::string::npos) << help.out;
+  EXPECT_NE(only_line(mjarm({"check"}, by_dev)).find("./dev check PROGRAM.yaml"),
+            std::string::npos);
+  EXPECT_NE(only_line(mjarm({"model", "inof"}, by_dev)).find("\"./dev model\""), std::string::npos);
+  EXPECT_NE(only_line(mjarm({"models"}, by_dev)).find("./dev models"), std::string::npos);
+  EXPECT_EQ(mjarm({"--version"}, by_dev).out.rfind("mjarm ", 0), 0u);
+}
+
 TEST(CommandLine, NoCommandIsAUsageError) {
   const auto none = mjarm({});
   EXPECT_EQ(none.exit_code, 2);

@@ -11,6 +11,7 @@
 #include "apps/mjarm/commands/model_report.hpp"
 #include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/log.hpp"
+#include "mjarm/core/program_name.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -112,8 +113,8 @@ Run setup(CLI::App& app) {
       const Result<Model> model = load(*options);
       return model ? run_export(*model, options->export_to) : fail(model.error());
     }
-    return fail(Errc::usage,
-                text(msg::app_no_subcommand, "mjarm model", "info, tree, check, export"));
+    return fail(Errc::usage, text(msg::app_no_subcommand, program_name() + " model",
+                                  "info, tree, check, export"));
   };
 }
 

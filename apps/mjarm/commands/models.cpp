@@ -13,6 +13,7 @@
 #include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/nearest_word.hpp"
+#include "mjarm/core/program_name.hpp"
 #include "mjarm/core/text_width.hpp"
 #include "mjarm/core/user_data.hpp"
 #include "mjarm/install/hanzi_package.hpp"
@@ -248,7 +249,7 @@ Run setup(CLI::App& app) {
   add_flag(command, "--json", options->json, msg::app_option_json);
   return [options, &command]() -> Result<int> {
     if (is_called(command)) return run(*options);
-    return fail(Errc::usage, text(msg::app_no_subcommand, "mjarm models", "install"));
+    return fail(Errc::usage, text(msg::app_no_subcommand, program_name() + " models", "install"));
   };
 }
 
