@@ -1,6 +1,7 @@
 """Tests of how refusals.py judges, with programs that only pretend to be mjarm. Run: python3 tools/refusals_test.py"""
 
 import pathlib
+import signal
 import sys
 import tempfile
 import unittest
@@ -55,10 +56,10 @@ class RefusalsTest(unittest.TestCase):
 
     def test_a_search_that_stays_is_told(self):
         with self.assertRaisesRegex(refusals.Wrong, "had ended"):
-            refusals.stopped(self.mjarm("pass"))
+            refusals.stopped(self.mjarm("pass"), signal.SIGTERM)
         late = "signal.signal(signal.SIGINT, lambda *_: (time.sleep(1.2), sys.exit('stopped')))\nsignal.pause()"
         with self.assertRaisesRegex(refusals.Wrong, "to the end"):
-            refusals.stopped(self.mjarm(late))
+            refusals.stopped(self.mjarm(late), signal.SIGINT)
 
     def test_arms_are_whole(self):
         for rows in (refusals.WRIST, refusals.PARALLEL, refusals.STRAIGHT):
