@@ -127,7 +127,10 @@ Result<RemoteWindow> RemoteWindow::open(const Model& model, const std::string& t
 
 Result<std::optional<RemoteWindow>> RemoteWindow::open_where_possible(
     const Model& model, const std::string& title, const WindowOptions& options) {
-  if (!is_possible()) return std::nullopt;
+  if (!is_possible()) {
+    if (!has_display()) log_info(text(msg::view_without));
+    return std::nullopt;
+  }
   Result<RemoteWindow> window = open(model, title, options);
   if (window) return std::move(*window);
   if (window.error().code != Errc::not_available) return fail(std::move(window.error()));

@@ -53,7 +53,8 @@ class RemoteWindow {
   /// @return what `Window::open` says.
   [[nodiscard]] static Result<RemoteWindow> open(const Model& model, const std::string& title,
                                                  const WindowOptions& options);
-  /// The same; none where there is no main thread for it, no display or no OpenGL.
+  /// The same; none, which the log tells, where there is no display or no OpenGL, nor where there
+  /// is no main thread for it.
   [[nodiscard]] static Result<std::optional<RemoteWindow>> open_where_possible(
       const Model& model, const std::string& title, const WindowOptions& options);
   /// Waits until it is gone.

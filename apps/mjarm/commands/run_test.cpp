@@ -69,6 +69,20 @@ TEST(Check, EveryCommandOnProgramsTakesWhatItsMessageAsksFor) {
   EXPECT_THAT(only_line(view), HasSubstr("mjarm render"));
 }
 
+TEST(Run, WithoutADisplayItSaysThatNoWindowOpens) {
+  const support::TempFolder folder;
+  const auto file = folder.write("cell.yaml", "robot: ur5e\nprogram:\n  - wait: 100ms\n").string();
+  const auto say = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"run", file, "--out", (folder.path() / "out").string()});
+    const auto done = mjarm(more, {.environment = {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}}});
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    return done.err;
+  };
+  EXPECT_THAT(say({}), HasSubstr("no display, so no window opens (--serve shows it in a browser"));
+  EXPECT_THAT(say({"--lang", "zh-CN"}), HasSubstr("没有显示器，因此不打开窗口"));
+  EXPECT_THAT(say({"--headless"}), ::testing::Not(HasSubstr("no display")));
+}
+
 TEST(Check, FaultsGoToOutputAndTheFirstIntoOneLine) {
   const support::TempFolder folder;
   const auto file = folder

@@ -183,6 +183,12 @@ Result<DemoValues> read_values(const DemoArguments& arguments) {
   return values;
 }
 
+/// The tutorial's way is another run, so that both can be compared.
+std::filesystem::path default_folder(const Demo& demo, const DemoArguments& arguments) {
+  return std::filesystem::path("mjarm-out") /
+         (demo.name + std::string(arguments.guide ? "-guide" : ""));
+}
+
 }  // namespace
 
 void add_demo_options(CLI::App& app, unsigned uses, DemoArguments& arguments) {
@@ -208,7 +214,7 @@ Result<DemoOptions> read_demo_options(const Demo& demo, const DemoArguments& arg
                    .tip = arguments.tip,
                    .package_paths = arguments.package_paths,
                    .allow_outside = arguments.allow_outside};
-  options.out = arguments.out.empty() ? std::filesystem::path("mjarm-out") / demo.name
+  options.out = arguments.out.empty() ? default_folder(demo, arguments)
                                       : std::filesystem::path(arguments.out);
   options.headless = arguments.headless;
   options.meshes = arguments.meshes;

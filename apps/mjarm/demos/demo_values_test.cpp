@@ -47,6 +47,15 @@ TEST_F(DemoValuesTest, ThePointIsWhereItIsWanted) {
   EXPECT_NEAR(joint(log, "shoulder_pan_joint", 0), -1, 1e-9) << "it starts at the seed";
 }
 
+TEST_F(DemoValuesTest, TheTutorialsWayHasAFolderOfItsOwn) {
+  const support::RunOptions here{.folder = folder_.path(), .input = {}, .environment = {}};
+  EXPECT_EQ(mjarm({"demo", "ellipse", "--headless", "--seconds", "0.1"}, here).exit_code, 1);
+  const std::string before = folder_.read("mjarm-out/ellipse/report.json");
+  EXPECT_EQ(mjarm({"demo", "ellipse", "--headless", "--guide"}, here).exit_code, 1);
+  EXPECT_EQ(folder_.read("mjarm-out/ellipse/report.json"), before);
+  EXPECT_THAT(folder_.read("mjarm-out/ellipse-guide/report.json"), HasSubstr("inner_void"));
+}
+
 TEST_F(DemoValuesTest, AnotherArmGoesToItsOwnPoint) {
   const Columns log = log_of({"movej", "--robot", "panda", "--seed-q", "0,-0.5,0,-2,0,1.57,0.785",
                               "--to", "0.4,0.2,0.4", "--quat", "0,1,0,0"});
