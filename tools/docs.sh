@@ -23,7 +23,7 @@ build_site() {
   set_up_packages $site_packages
   find_sphinx
   check "links" check_links
-  check "build" build_counted release mjarm
+  check "build" build_counted release mjarm mjarm-bench
   ((failed)) || check "site" "$python3" -B "$root/tools/site/build.py" --program "$release/bin/mjarm" --out "$root/build/docs"
   ((failed)) || say "open build/docs/index.html in a browser"
   finish
