@@ -38,6 +38,12 @@ answer=$("$work/bin/dev-link" fk "a b" --x 2>"$work/said") || code=$?
 [[ $(<"$work/said") == "called as $work/bin/dev-link" ]] || fail "the name that hints give: $(<"$work/said")"
 [[ $code == 3 ]] || fail "the exit code of the program is lost: $code"
 
+# Help builds nothing, and no argument is left unread.
+[[ $("$work/mjarm/dev" arms --help 2>&1) == "$("$source_dir/dev")" ]] || fail "arms --help is not the help"
+code=0
+answer=$("$work/mjarm/dev" test kinematics 2>&1) || code=$?
+[[ $code == 2 && $answer == *"'kinematics'"* ]] || fail "test kinematics: exit code $code: $answer"
+
 # A machine without packages: reported, not changed.
 printf '#!/bin/sh\nexit 1\n' >"$work/bin/dpkg-query"
 printf '#!/bin/sh\ntouch %s/apt-called\n' "$work" | tee "$work/bin/apt-get" >"$work/bin/sudo"
