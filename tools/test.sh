@@ -237,13 +237,14 @@ run_coverage() {
 run_arms() {
   "$root/tools/fetch_arms.sh" "$deps/arms" || exit
   check "build" build_counted dev whole_test mjarm-bench
-  if ((failed == 0 && $# == 0)); then
+  ((failed == 0)) || finish || exit
+  if (($# == 0)); then
     check "arms" env MJARM_ARMS_DATA="$deps/arms/robots" \
       "$root/build/dev/bin/whole_test" --gtest_filter='*TwelveArms*'
+    run_ssik_arms
+    run_refusals
   fi
-  ((failed || $#)) || run_ssik_arms
-  ((failed || $#)) || run_refusals
-  ((failed)) || run_menagerie "$@"
+  run_menagerie "$@"
   finish
 }
 
