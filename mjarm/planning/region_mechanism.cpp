@@ -22,7 +22,8 @@ constexpr double kFirstSlack = 1e-9;  // [m] and [rad] by which bounds are wider
 constexpr double kMoreSlack = 8;      // times so much where the pose is not within them,
 constexpr int kSlacks = 12;           // so many times at most
 constexpr double kAcross = 1e-12;     // of a unit vector along an axis that is across it
-constexpr int kMaxArcs = 16;  // 6 of the place, 2 each of roll, pitch and yaw, 1 of the lean
+constexpr double kAlike = 1e-9;       // [rad] gaps have the same room
+constexpr int kMaxArcs = 13;  // 6 of the place, 2 each of roll, pitch and yaw, 1 of the lean
 
 /// What a number does as a hinge turns by a: mean + cosine cos(a) + sine sin(a).
 struct Wave {
@@ -74,7 +75,8 @@ class Forbidden {
   }
 
   /// The middle of the gap that has most to both sides of the value of the range that is nearest to
-  /// it, as that value; none where no gap reaches the range.
+  /// it, as that value; none where no gap reaches the range. Of gaps alike (two bounds on one wave
+  /// leave such) the one nearer to the middle of the range, not that which rounding prefers.
   std::optional<double> value(double min, double max) {
     const double middle = 0.5 * (min + max);
     std::optional<double> best;
@@ -83,7 +85,9 @@ class Forbidden {
       const double wanted = middle + std::remainder(0.5 * (from + to) - middle, kCircle);
       const double there = std::clamp(wanted, min, max);
       const double room = 0.5 * (to - from) - std::abs(there - wanted);
-      if (room < 0 || (best && room <= most)) return;
+      if (room < 0 || (best && room < most - kAlike)) return;
+      const bool alike = best && room <= most + kAlike;
+      if (alike && std::abs(there - middle) >= std::abs(*best - middle)) return;
       best = there;
       most = room;
     };
@@ -177,19 +181,29 @@ double hinge_value(const TaskRegion& region, const Pose& X_WT) {
   return 0.5 * (min + max);
 }
 
-/// As a slide shifts, all that changes is the place, along a line.
+/// As a slide shifts, all that changes is the place, along a line: each bound ends the values, at
+/// one that moves evenly with the slack. Of a pose outside the slack is the least that leaves any.
 double slide_value(const TaskRegion& region, const Pose& X_WT) {
   const Mechanism& slide = *region.mechanism;
   const Pose X_RW = region.X_WR.inverse();
   const Eigen::Vector3d axis = X_RW.R * slide.axis_W, p = (X_RW * X_WT * region.X_FT.inverse()).p;
-  double least = -kFreePlace, most = kFreePlace;
+  Eigen::Array3d low = Eigen::Array3d::Constant(-kFreePlace), high = -low, by_slack{0, 0, 0};
   for (int k = 0; k < 3; ++k) {
     if (std::abs(axis[k]) < kAcross) continue;
-    const double a = (p[k] - region.place_max[k] - kFirstSlack) / axis[k],
-                 b = (p[k] - region.place_min[k] + kFirstSlack) / axis[k];
-    least = std::max(least, std::min(a, b));
-    most = std::min(most, std::max(a, b));
+    const double a = (p[k] - region.place_max[k]) / axis[k],
+                 b = (p[k] - region.place_min[k]) / axis[k];
+    low[k] = std::min(a, b);
+    high[k] = std::max(a, b);
+    by_slack[k] = 1 / std::abs(axis[k]);
   }
+  double slack = kFirstSlack;
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      if (low[i] > high[k])
+        slack = std::max(slack, (low[i] - high[k]) / (by_slack[i] + by_slack[k]));
+    }
+  }
+  double least = (low - slack * by_slack).maxCoeff(), most = (high + slack * by_slack).minCoeff();
   if (!std::isfinite(least)) least = std::min(slide.min, most);
   if (!std::isfinite(most)) most = std::max(slide.max, least);
   return std::clamp(0.5 * (least + most), slide.min, slide.max);

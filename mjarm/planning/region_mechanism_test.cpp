@@ -146,6 +146,34 @@ TEST(RegionMechanism, ADrawerStandsWhereItsHandleIs) {
   EXPECT_FALSE(room_in(drawer, {drawer.X_WR.p + 0.35 * axis, drawer.X_WR.R}).within());
 }
 
+TEST(RegionMechanism, OutsideADrawerStandsWhereTheLeastIsMissing) {
+  TaskRegion drawer =
+      region_about({Eigen::Vector3d::Zero(), from_euler({0, 0, pi / 3})}, {0.01, 0.01, 0.01});
+  // Off the axis of R by 1.3e-5 rad, as one is that was written with three digits; or by much.
+  for (const Eigen::Vector3d& along :
+       {Eigen::Vector3d(0.5, 0.866, 0), Eigen::Vector3d(0.4, 0.9, 0.1)}) {
+    const Eigen::Vector3d axis = along.normalized(), aside = axis.unitOrthogonal();
+    drawer.mechanism = Mechanism{.type = JointType::slide, .axis_W = axis, .min = 0, .max = 0.4};
+    for (const double off : {0.0101, 0.012, 0.05, -0.02}) {
+      const Pose X_WT{0.1 * axis + off * aside, drawer.X_WR.R};
+      EXPECT_NEAR(std::min(0.0, room_in(drawer, X_WT).place), most_room(drawer, X_WT), 1e-6) << off;
+    }
+  }
+}
+
+TEST(RegionMechanism, OfTwoGapsAlikeRoundingDoesNotChoose) {
+  TaskRegion line = region_about({}, {0.01, kFreePlace, kFreePlace}, pi, pi);
+  line.mechanism = Mechanism{.axis_W = Eigen::Vector3d::UnitZ(), .min = -pi, .max = pi};
+  double last = value_for(line, {{0.3, 0.1, 0}, Eigen::Matrix3d::Identity()});
+  for (int k = 1; k <= 200; ++k) {
+    const double angle = std::atan2(0.1, 0.3) + 0.003 * k, far = 0.32 + 0.0002 * k;
+    const double value = value_for(
+        line, {{far * std::cos(angle), far * std::sin(angle), 0}, Eigen::Matrix3d::Identity()});
+    EXPECT_NEAR(value, last, 0.01) << k;
+    last = value;
+  }
+}
+
 TEST(RegionMechanism, OneThatStandsStillIsOneRegion) {
   Rng rng(13);
   for (int k = 0; k < 200; ++k) {
