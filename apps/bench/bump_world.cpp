@@ -74,12 +74,11 @@ struct Bump {
   }
 };
 
-Bump draw_bump(const Model& model, const Arm& arm, std::span<const MovedBody> bodies, Rng& rng) {
+Bump draw_bump(const Model& model, std::span<const MovedBody> bodies, Rng& rng) {
   Bump out;
-  const SceneBodies names = scene_bodies(model, arm);
   for (;;) {
     const MovedBody& body = bodies[rng.below(bodies.size())];
-    const auto skin = body_surface(model, names.name[static_cast<std::size_t>(body.body)]);
+    const auto skin = body_surface(model, body.body);
     if (!skin) continue;  // a load without a shape
     const SurfacePoint point = SurfacePoints(*skin).draw(rng.uniform(), rng);
     const Eigen::Vector3d aside(rng.normal(), rng.normal(), rng.normal());
@@ -117,7 +116,7 @@ class BumpDrive {
 
   Result<BumpRun> drive(bool push, double seconds) {
     if (auto warm = warm_up(); !warm) return fail(std::move(warm.error()));
-    if (push) bump_ = draw_bump(sim_.model(), arm_, bodies_, rng_);
+    if (push) bump_ = draw_bump(sim_.model(), bodies_, rng_);
     const double starts = push ? rng_.uniform(3, 8) : seconds;
     while (sim_.time() < starts + (push ? kBefore + kAfter + kHeld : 0)) {
       if (push && !bump_->from && sim_.time() >= starts) bump_->from = sim_.time();

@@ -274,6 +274,7 @@ JointVec ContactObserver::explain(const Onset& onset) const {
 }
 
 JointVec ContactObserver::torque() const {
+  if (onsets_.empty()) return JointVec::Zero(prior_.size());
   return explain(onsets_[static_cast<std::size_t>((newest_ + 1) % kWindow)]);
 }
 

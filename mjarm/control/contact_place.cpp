@@ -65,14 +65,13 @@ Eigen::Vector4d best_shares(const Eigen::Matrix4d& H, const Eigen::Vector4d& g) 
 ContactPlaces::ContactPlaces(const Model& model, const Arm& arm) : arm_(arm) {
   const SceneBodies scene = scene_bodies(model, arm);
   for (const MovedBody& body : moved_bodies(model, arm)) {
-    const std::string& name = scene.name[static_cast<std::size_t>(body.body)];
     const Eigen::Vector3d center_B = body.X_JB.inverse() * body.center_J;
-    const auto skin = skin_points(body_surface(model, name), center_B);
+    const auto skin = skin_points(body_surface(model, body.body), center_B);
     for (const SurfacePoint& point : skin) {
       points_.push_back({bodies_.size(), body.X_JB * point.p, -(body.X_JB.R * point.outward),
                          1.0 / static_cast<double>(skin.size())});
     }
-    bodies_.push_back({body.joint, name});
+    bodies_.push_back({body.joint, scene.name[static_cast<std::size_t>(body.body)]});
   }
 }
 

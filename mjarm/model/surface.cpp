@@ -194,17 +194,23 @@ Result<Surface> body_surface(const Model& model, std::string_view body) {
     return fail(Errc::bad_input, text(msg::model_surface_no_body, std::string(body),
                                       did_you_mean(std::string(body), names)));
   }
+  return body_surface(model, number);
+}
+
+Result<Surface> body_surface(const Model& model, int body) {
+  const mjModel& m = *model.raw();
+  const std::string name = m.names + m.name_bodyadr[body];
   Surface out;
-  for (const int geom : seen_geoms(m, number)) {
+  for (const int geom : seen_geoms(m, body)) {
     const std::optional<Surface> part = geom_surface(m, geom);
-    if (!part) return fail(Errc::bad_input, text(msg::model_surface_flat, std::string(body)));
+    if (!part) return fail(Errc::bad_input, text(msg::model_surface_flat, name));
     const mjtNum* q = m.geom_quat + 4 * geom;
     append(out, *part,
            {.p = Eigen::Map<const Eigen::Vector3d>(m.geom_pos + 3 * geom),
             .R = to_matrix(Quat(q[0], q[1], q[2], q[3]))});
   }
   if (out.triangles.empty()) {
-    return fail(Errc::bad_input, text(msg::model_surface_unseen, std::string(body)));
+    return fail(Errc::bad_input, text(msg::model_surface_unseen, name));
   }
   return out;
 }

@@ -58,6 +58,8 @@ void append(Surface& surface_A, const Surface& surface_B, const Pose& X_AB);
 /// @return bad_input with the nearest name, or where nothing of the body is seen or a geom is a
 ///         plane or a height field.
 [[nodiscard]] Result<Surface> body_surface(const Model& model, std::string_view body);
+/// The same of a body by its number in the model, as it may have no name.
+[[nodiscard]] Result<Surface> body_surface(const Model& model, int body);
 
 /// Whether nothing that is drawn tells two bodies of a model apart: geoms of the same shapes, sizes
 /// and colours at the same places, in the same order. False where there is no such body.

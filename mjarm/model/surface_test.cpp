@@ -90,6 +90,10 @@ TEST(Surface, OfABodyIsThatOfItsGeomsInItsFrame) {
   EXPECT_NE(body_surface(model, "wegde").error().what.find("\"wedge\""), std::string::npos);
   EXPECT_FALSE(body_surface(model, "unseen"));
   EXPECT_FALSE(body_surface(model, "world"));
+  const Model unnamed = *Model::from_mjcf(
+      R"(<mujoco><worldbody><body/><body><geom type="box" size=".1 .1 .1"/></body></worldbody></mujoco>)");
+  EXPECT_NEAR(volume_of(*body_surface(unnamed, 2)), 8e-3, 1e-9);
+  EXPECT_FALSE(body_surface(unnamed, 1));
 }
 
 TEST(Surface, BodiesLookAlikeWhereNothingThatIsDrawnTellsThemApart) {
