@@ -84,6 +84,8 @@ Result<JointLog> read_joint_log(const std::filesystem::path& file, const Arm& ar
   for (line = reader->next(); line && *line; line = reader->next()) {
     const Result<std::vector<double>> row = read_row(reader->place(), **line, *columns);
     if (!row) return fail(row.error());
+    // Where a motion ends and the next one begins stands in a log for both.
+    if (!out.q.empty() && row->front() == before) continue;
     const double step = row->front() - before;
     before = row->front();
     if (out.q.size() == 1) out.timestep = step;

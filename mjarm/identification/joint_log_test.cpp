@@ -41,6 +41,14 @@ TEST(JointLog, FindsColumnsByNameWhateverStandsBetween) {
   EXPECT_EQ(log.q[1][0], 1.1);
 }
 
+TEST(JointLog, TakesWhereAMotionEndsAndTheNextBeginsOnce) {
+  const std::string row = ",1,2,3,4,5,6,.1,.2,.3,.4,.5,.6\n";
+  const JointLog log =
+      read_text(head() + "0" + row + "0.002" + row + "0.002" + row + "0.004" + row).value();
+  EXPECT_EQ(log.q.size(), 3u);
+  EXPECT_EQ(log.timestep, 0.002);
+}
+
 TEST(JointLog, SaysInOneLineWhatIsWrong) {
   const auto said = [](const std::string& text) { return read_text(text).error().what; };
   EXPECT_THAT(said("time [s],q shoulder_pan_joint\n"), HasSubstr("no column \"q shoulder_lift"));
@@ -50,7 +58,7 @@ TEST(JointLog, SaysInOneLineWhatIsWrong) {
   EXPECT_THAT(said(head() + "0,x,2,3,4,5,6,.1,.2,.3,.4,.5,.6\n"),
               HasSubstr("log.csv:2: column \"torque shoulder_pan_joint [N m]\": \"x\""));
   EXPECT_THAT(said(head() + "0" + row + "0.002" + row + "0.005" + row), HasSubstr("log.csv:4:"));
-  EXPECT_THAT(said(head() + "0" + row + "0" + row), HasSubstr("log.csv:3:"));
+  EXPECT_THAT(said(head() + "0" + row + "0.002" + row + "0" + row), HasSubstr("log.csv:4:"));
 }
 
 }  // namespace
