@@ -26,7 +26,7 @@ touch CMakeLists.txt CMakePresets.json
 printf '#!/bin/sh\necho "in $PWD:" "$@"\necho "called as $MJARM_CALLED_AS" >&2\nexit 3\n' >build/release/bin/mjarm
 chmod +x build/release/bin/mjarm
 touch build/release/.dev-built-mjarm
-note_libraries() { (shopt -s nullglob && echo /usr/include/{ompl*,apriltag,benchmark}/) >"$work/mjarm/build/release/.dev-libraries"; }
+note_libraries() { (shopt -s nullglob && echo /usr/include/{ompl*,apriltag*,benchmark*}/) >"$work/mjarm/build/release/.dev-libraries"; }
 note_libraries
 ln -s "$work/mjarm/dev" "$work/bin/dev-link"
 cd "$work/elsewhere"
@@ -43,6 +43,9 @@ answer=$("$work/bin/dev-link" fk "a b" --x 2>"$work/said") || code=$?
 code=0
 answer=$("$work/mjarm/dev" test kinematics 2>&1) || code=$?
 [[ $code == 2 && $answer == *"'kinematics'"* ]] || fail "test kinematics: exit code $code: $answer"
+code=0
+answer=$("$work/mjarm/dev" build release asan 2>&1) || code=$?
+[[ $code == 2 && $answer == *"'asan'"* ]] || fail "build release asan: exit code $code: $answer"
 
 # A machine without packages: reported, not changed.
 printf '#!/bin/sh\nexit 1\n' >"$work/bin/dpkg-query"
