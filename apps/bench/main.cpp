@@ -8,6 +8,7 @@
 #include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/sim.hpp"
 #include "mjarm/core/os_streams.hpp"
+#include "mjarm/core/program_name.hpp"
 #include "mjarm/core/user_cache.hpp"
 
 namespace mjarm::app {
@@ -28,7 +29,7 @@ Run setup(CLI::App& bench) {
       if (is_called(*app)) return run();
       names += (names.empty() ? "" : text(msg::core_comma)) + name_of(*app);
     }
-    return fail(Errc::usage, text(msg::app_no_subcommand, "mjarm bench", names));
+    return fail(Errc::usage, text(msg::app_no_subcommand, program_name() + " bench", names));
   };
 }
 
