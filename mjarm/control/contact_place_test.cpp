@@ -88,15 +88,35 @@ TEST(ContactPlaces, TheLinkThatIsPushedIsNamed) {
   }
 }
 
-TEST(ContactPlaces, ALinkOfWhichNothingIsDrawnHasAPlaceToo) {
-  const Loaded robot = load_text(R"(<mujoco><compiler angle="radian"/><default>
+/// An arm of three links: how they are drawn, and the start of the second one's element.
+Loaded three_links(const std::string& group, const std::string& two) {
+  return load_text(R"(<mujoco><compiler angle="radian"/><default>
     <joint axis="0 1 0" range="-2 2" limited="true"/>
-    <geom type="capsule" fromto="0 0 0 0 0 .3" size=".03" group="3"/></default>
+    <geom type="capsule" fromto="0 0 0 0 0 .3" size=".03" group=")" +
+                   group + R"("/></default>
     <worldbody><body name="one"><joint name="a"/><geom/>
-    <body name="two" pos="0 0 .3"><joint name="b" axis="1 0 0"/><geom/>
+    )" + two + R"( pos="0 0 .3"><joint name="b" axis="1 0 0"/><geom/>
     <body name="three" pos="0 0 .3"><joint name="c"/><geom/><site name="tool" pos="0 0 .3"/>
     </body></body></body></worldbody>
     <actuator><motor joint="a"/><motor joint="b"/><motor joint="c"/></actuator></mujoco>)");
+}
+
+TEST(ContactPlaces, ALinkWithoutANameHasASurfaceToo) {
+  const Loaded robot = three_links("2", "<body"), named = three_links("2", R"(<body name="two")");
+  World world(robot, robot.arm.home);
+  mj_forward(&world.m(), &world.d());
+  // Aside of its middle: pushes at the centre of mass alone would not tell this.
+  const Eigen::Vector3d way = Eigen::Vector3d(1, 0.4, 0).normalized();
+  const NoticedContact contact = contact_of(robot, world, 2, {-0.02, -0.01, 0.55}, way);
+  const ContactPlace place = ContactPlaces(robot.model, robot.arm).find(robot.arm.home, contact);
+  const ContactPlace as = ContactPlaces(named.model, named.arm).find(robot.arm.home, contact);
+  EXPECT_EQ(place.body, "#2");
+  EXPECT_EQ(as.body, "two");
+  EXPECT_EQ(place.force_W, as.force_W);
+}
+
+TEST(ContactPlaces, ALinkOfWhichNothingIsDrawnHasAPlaceToo) {
+  const Loaded robot = three_links("3", R"(<body name="two")");
   World world(robot, robot.arm.home);
   mj_forward(&world.m(), &world.d());
   const ContactPlaces places(robot.model, robot.arm);

@@ -79,15 +79,15 @@ Result<JointLog> read_joint_log(const std::filesystem::path& file, const Arm& ar
   const Result<LogColumns> columns = find_columns(file.string(), line->value_or(""), arm);
   if (!columns) return fail(columns.error());
   JointLog out;
-  double before = 0;
+  std::vector<double> before;
   const Eigen::Index n = arm.dof();
   for (line = reader->next(); line && *line; line = reader->next()) {
     const Result<std::vector<double>> row = read_row(reader->place(), **line, *columns);
     if (!row) return fail(row.error());
     // Where a motion ends and the next one begins stands in a log for both.
-    if (!out.q.empty() && row->front() == before) continue;
-    const double step = row->front() - before;
-    before = row->front();
+    if (out.q.size() > 1 && *row == before) continue;
+    const double step = before.empty() ? 0 : row->front() - before.front();
+    before = *row;
     if (out.q.size() == 1) out.timestep = step;
     if (!out.q.empty() &&
         !(out.timestep > 0 && std::abs(step - out.timestep) < kEven * out.timestep)) {

@@ -58,7 +58,10 @@ TEST(JointLog, SaysInOneLineWhatIsWrong) {
   EXPECT_THAT(said(head() + "0,x,2,3,4,5,6,.1,.2,.3,.4,.5,.6\n"),
               HasSubstr("log.csv:2: column \"torque shoulder_pan_joint [N m]\": \"x\""));
   EXPECT_THAT(said(head() + "0" + row + "0.002" + row + "0.005" + row), HasSubstr("log.csv:4:"));
+  EXPECT_THAT(said(head() + "0" + row + "0" + row), HasSubstr("log.csv:3:"));
   EXPECT_THAT(said(head() + "0" + row + "0.002" + row + "0" + row), HasSubstr("log.csv:4:"));
+  const std::string other = ",1,2,3,4,5,6,.1,.2,.3,.4,.5,.7\n";
+  EXPECT_THAT(said(head() + "0" + row + "0.002" + row + "0.002" + other), HasSubstr("log.csv:4:"));
 }
 
 }  // namespace

@@ -199,8 +199,8 @@ double slide_value(const TaskRegion& region, const Pose& X_WT) {
   double slack = kFirstSlack;
   for (int i = 0; i < 3; ++i) {
     for (int k = 0; k < 3; ++k) {
-      if (low[i] > high[k])
-        slack = std::max(slack, (low[i] - high[k]) / (by_slack[i] + by_slack[k]));
+      if (low[i] <= high[k]) continue;
+      slack = std::max(slack, (low[i] - high[k]) / (by_slack[i] + by_slack[k]));
     }
   }
   double least = (low - slack * by_slack).maxCoeff(), most = (high + slack * by_slack).minCoeff();
