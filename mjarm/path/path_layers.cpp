@@ -27,6 +27,9 @@ constexpr double kRoomShare = 0.05;
 constexpr double kSingular = 0.02;   // smallest singular value
 constexpr double kClearance = 0.01;  // [m]
 
+/// [rad or m] To the limits of a joint.
+double wanted_room(double range) { return std::min(kRoom, kRoomShare * range); }
+
 double largest(const JointVec& d) { return d.cwiseAbs().maxCoeff(); }
 
 IkOptions without_predicate(IkOptions options) {
@@ -169,6 +172,30 @@ bool PathLayers::fits(const JointVec& q, double tightness) const {
   return within_limits(ik_.arm(), as_span(q)) && level(limit_tightness(q)) <= tightness;
 }
 
+bool PathLayers::has_room(const JointVec& q, double tightness) const {
+  if (!fits(q, tightness)) return false;
+  const auto here = room(q);
+  return here && level(here->tightness) <= tightness;
+}
+
+IkSolver PathLayers::within(double tightness) const {
+  constexpr double kRounding = 1e-12;
+  Arm arm = ik_.arm();
+  JointLimits& limits = arm.limits;
+  for (Eigen::Index i = 0; i < limits.lower.size(); ++i) {
+    const double range = limits.upper[i] - limits.lower[i];
+    if (!std::isfinite(range)) continue;
+    const double margin = 2 * wanted_room(range) * (1 - tightness) + kRounding * range;
+    limits.lower[i] += margin;
+    limits.upper[i] -= margin;
+  }
+  return IkSolver(arm, near_.options());
+}
+
+double PathLayers::step_share(const Pose& X_before, const Pose& X_WT, const JointVec& step) const {
+  return largest(step.cwiseQuotient(longest_step(X_before, X_WT)));
+}
+
 /// 0.5 at kRoom from the nearest limit, 1 on it.
 double PathLayers::limit_tightness(const JointVec& q) const {
   double worst = 0;
@@ -176,7 +203,7 @@ double PathLayers::limit_tightness(const JointVec& q) const {
   for (Eigen::Index i = 0; i < q.size(); ++i) {
     const double range = limits.upper[i] - limits.lower[i];
     if (!std::isfinite(range)) continue;
-    const double room = std::min(kRoom, kRoomShare * range);
+    const double room = wanted_room(range);
     const double margin = std::min(q[i] - limits.lower[i], limits.upper[i] - q[i]);
     worst = std::max(worst, 1 - margin / (2 * room));
   }
@@ -351,7 +378,7 @@ std::vector<JointVec> PathLayers::aside(const JointVec& q) const {
 Layer PathLayers::follow(const Pose& X_WT, const Layer& before, const JointVec& longest) const {
   const double same = ik_.arm().dof() > 6 ? kSameOfMany : kSame;
   Layer layer;
-  const auto add = [&](const Pose& X, std::size_t i, const JointVec& seed) {
+  const auto add = [&](const Pose& X, std::size_t i, const JointVec& seed, bool aside) {
     const auto answer = near_.solve(X, as_span(seed));
     if (!answer) return kInfinity;
     if (largest((answer->q - before[i].q).cwiseQuotient(longest)) > 1) return kInfinity;
@@ -362,9 +389,9 @@ Layer PathLayers::follow(const Pose& X_WT, const Layer& before, const JointVec& 
       return largest(node.q - answer->q) < same;
     });
     if (known == layer.end()) {
-      layer.push_back({answer->q, static_cast<int>(i), rank});
+      layer.push_back({answer->q, static_cast<int>(i), rank, aside});
     } else if (rank < known->rank) {
-      *known = {answer->q, static_cast<int>(i), rank};
+      *known = {answer->q, static_cast<int>(i), rank, aside};
     }
     return std::max(here->tightness, limit_tightness(answer->q));
   };
@@ -372,9 +399,10 @@ Layer PathLayers::follow(const Pose& X_WT, const Layer& before, const JointVec& 
   constexpr std::size_t kAside = 16;  // only the best of them look to the sides
   const std::vector<Pose> poses = allowed(X_WT);
   for (std::size_t i = 0; i < before.size(); ++i) {
-    if (add(X_WT, i, before[i].q) < kTight || i >= kAside) continue;
-    for (const JointVec& seed : aside(before[i].q)) add(X_WT, i, seed);
-    for (std::size_t k = 1; k < poses.size(); ++k) add(poses[k], i, before[i].q);
+    const bool moved = before[i].aside;
+    if (add(X_WT, i, before[i].q, moved) < kTight || i >= kAside) continue;
+    for (const JointVec& seed : aside(before[i].q)) add(X_WT, i, seed, true);
+    for (std::size_t k = 1; k < poses.size(); ++k) add(poses[k], i, before[i].q, moved);
   }
   return layer;
 }

@@ -25,6 +25,7 @@ struct TrackNode {
   JointVec q;
   int parent = -1;  ///< index in the layer before
   TrackRank rank;
+  bool aside = false;  ///< the track has moved aside within itself
 };
 
 /// The answers to one pose that tracks lead to, best first.
@@ -74,6 +75,13 @@ class PathLayers {
   [[nodiscard]] double smallest_singular_value(const JointVec& q) const;
   /// `q` is within the limits, and as far from them as a track of that tightness is.
   [[nodiscard]] bool fits(const JointVec& q, double tightness) const;
+  /// The same of all that tightness is about, but for the steps; and `q` is not refused.
+  [[nodiscard]] bool has_room(const JointVec& q, double tightness) const;
+  /// A solver from seeds whose limits are those that has_room() asks for.
+  [[nodiscard]] IkSolver within(double tightness) const;
+  /// How long the step from the pose X_before to X_WT is, as a share of what is allowed.
+  [[nodiscard]] double step_share(const Pose& X_before, const Pose& X_WT,
+                                  const JointVec& step) const;
 
  private:
   [[nodiscard]] std::vector<Pose> allowed(const Pose& X_WT) const;

@@ -15,6 +15,43 @@ constexpr int kDeepest = 24;  // halvings of one stretch
 // [rad or m] Joints moving straight by less stray less than the answers themselves.
 constexpr double kShortest = 1e-5;
 
+/// A cubic from one answer to the next. A redundant arm has many answers between: along a straight
+/// one its motion within itself would turn off at each waypoint, and be slow there once it is
+/// timed.
+struct Cubic {
+  double s0 = 0, s1 = 0;
+  JointVec q0, q1;
+  JointVec bend0, bend1;  ///< what the slopes at the ends, times s1 - s0, have more than q1 - q0
+
+  [[nodiscard]] JointVec at(double s) const {
+    const double t = (s - s0) / (s1 - s0);
+    return q0 + t * (q1 - q0) + t * (1 - t) * ((1 - t) * bend0 - t * bend1);
+  }
+};
+
+/// dq/ds at waypoint k: that of the parabola through it and its neighbours.
+JointVec slope(const JointPath& path, std::size_t k) {
+  const auto chord = [&](std::size_t i) {
+    return JointVec((path.q[i + 1] - path.q[i]) / (path.s[i + 1] - path.s[i]));
+  };
+  if (k == 0) return chord(0);
+  if (k + 1 == path.q.size()) return chord(k - 1);
+  const double share = (path.s[k] - path.s[k - 1]) / (path.s[k + 1] - path.s[k - 1]);
+  return (1 - share) * chord(k - 1) + share * chord(k);
+}
+
+/// The cubic from waypoint i to the next.
+Cubic cubic_after(const JointPath& path, std::size_t i) {
+  const double s0 = path.s[i], s1 = path.s[i + 1];
+  const JointVec step = path.q[i + 1] - path.q[i];
+  return {s0,
+          s1,
+          path.q[i],
+          path.q[i + 1],
+          (s1 - s0) * slope(path, i) - step,
+          (s1 - s0) * slope(path, i + 1) - step};
+}
+
 class Refiner {
  public:
   Refiner(const IkSolver& ik, const Curve& curve, const CurveOptions& options)
@@ -26,6 +63,7 @@ class Refiner {
   Refined run(const JointPath& path) {
     append(path.s[0], path.q[0]);
     for (std::size_t i = 1; i < path.q.size() && !is_stopped(options_.path.stop); ++i) {
+      cubic_ = cubic_after(path, i - 1);
       stretch(path.s[i - 1], path.q[i - 1], path.s[i], path.q[i], 0);
       append(path.s[i], path.q[i]);
     }
@@ -81,8 +119,8 @@ class Refiner {
   /// The answer between two others; none where the branch is lost.
   [[nodiscard]] std::optional<JointVec> between(double s, const JointVec& q0,
                                                 const JointVec& q1) const {
-    const JointVec middle = 0.5 * (q0 + q1);
-    const auto answer = ik_.solve(allowed(options_.change(curve_.at(s)), middle), as_span(middle));
+    const JointVec seed = cubic_.at(s);
+    const auto answer = ik_.solve(allowed(options_.change(curve_.at(s)), seed), as_span(seed));
     if (!answer) return std::nullopt;
     const auto step = [&](const JointVec& q) { return (answer->q - q).cwiseAbs().maxCoeff(); };
     if (step(q0) > options_.path.max_step || step(q1) > options_.path.max_step) return std::nullopt;
@@ -124,6 +162,7 @@ class Refiner {
   LinkChain chain_;
   const Curve& curve_;
   const CurveOptions& options_;
+  Cubic cubic_;  // of the stretch at hand
   Refined out_;
 };
 

@@ -76,6 +76,64 @@ TEST(SolveCurve, TheArmOfSevenJoints) {
   expect_on_curve(ik.arm(), line, *path, {});
 }
 
+/// A circle before the Panda.
+Curve circle() {
+  return *Curve::ellipse({{0.45, 0, 0.3}, 0.05, 0.05, Eigen::Vector3d::UnitZ(), kDown});
+}
+
+/// [rad/m^2] The largest difference of d^2 q / ds^2 from one waypoint to the next, of any joint.
+double sharpest_change(const JointPath& path) {
+  double worst = 0;
+  JointVec last;
+  for (std::size_t i = 1; i + 1 < path.q.size(); ++i) {
+    const JointVec before = (path.q[i] - path.q[i - 1]) / (path.s[i] - path.s[i - 1]);
+    const JointVec after = (path.q[i + 1] - path.q[i]) / (path.s[i + 1] - path.s[i]);
+    const JointVec turn = (after - before) / (0.5 * (path.s[i + 1] - path.s[i - 1]));
+    if (i > 1) worst = std::max(worst, (turn - last).cwiseAbs().maxCoeff());
+    last = turn;
+  }
+  return worst;
+}
+
+/// It is 76 where the answers between two waypoints are sought from straight motions.
+TEST(SolveCurve, SelfMotionsDoNotTurnOffAtWaypoints) {
+  const Arm arm = testing::panda();
+  for (const bool closed_form : {true, false}) {
+    const IkSolver ik(arm, {.closed_form = closed_form});
+    const auto path = solve_curve(ik, circle(), as_span(arm.home));
+    ASSERT_TRUE(path.has_value()) << describe(path.error(), arm);
+    EXPECT_LT(sharpest_change(*path), 30);
+  }
+}
+
+/// As a search goes aside where it gets tight, the largest difference of two steps is 0.125 rad.
+TEST(SolveCurve, AnArmGoesAsideEvenly) {
+  const Arm arm = testing::panda();
+  const auto free = solve_curve(IkSolver(arm), circle(), as_span(arm.home));
+  ASSERT_TRUE(free.has_value());
+  double highest = 0;
+  for (const JointVec& q : free->q) highest = std::max(highest, q[6]);
+  std::vector<double> s;
+  for (int i = 0; i <= 200; ++i) s.push_back(i * circle().end() / 200);
+  const std::vector<Pose> poses = circle().poses(s);
+  for (const double missing : {0.0, 0.02, 0.04}) {
+    Arm narrow = arm;
+    narrow.limits.upper[6] = highest + 0.1 - missing;  // 0.1 rad are wanted
+    for (const bool closed_form : {true, false}) {
+      const IkSolver ik(narrow, {.closed_form = closed_form});
+      const auto path = solve_path(ik, poses, s, as_span(free->q[0]), {.keep_start = true});
+      ASSERT_TRUE(path.has_value()) << describe(path.error(), narrow);
+      testing::expect_on_poses(narrow, *path, poses);
+      double uneven = 0;
+      for (std::size_t i = 1; i + 1 < path->q.size(); ++i) {
+        const JointVec d = path->q[i + 1] - 2 * path->q[i] + path->q[i - 1];
+        uneven = std::max(uneven, d.cwiseAbs().maxCoeff());
+      }
+      EXPECT_LT(uneven, 0.02) << missing;
+    }
+  }
+}
+
 TEST(SolveCurve, SaysWhereItStops) {
   const IkSolver ik(testing::ur5e());
   // With the tool down, the wrist cannot come nearer to the first axis than 0.134 m.

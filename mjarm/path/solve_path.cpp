@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "mjarm/core/finite.hpp"
+#include "mjarm/path/even_track_internal.hpp"
 #include "mjarm/path/path_cause_internal.hpp"
 #include "mjarm/path/track_search_internal.hpp"
 
@@ -40,9 +41,11 @@ Result<JointPath, PathFailure> solve_path(const IkSolver& ik, std::span<const Po
   const JointVec q_from = clamp_to_limits(ik.arm(), q_start);
   const detail::PathLayers layers(ik, options);
   detail::Track track = detail::find_track(layers, poses, q_from);
+  const bool whole = track.size() == poses.size();
+  if (whole && track.last.front().aside) detail::even_out(layers, poses, s, track);
   const auto known = s.first(track.size());
   JointPath path{{known.begin(), known.end()}, std::move(track.q)};
-  if (path.q.size() == poses.size()) return path;
+  if (whole) return path;
   track.q = path.q;
   PathFailure failure;
   if (!track.is_stopped) failure = detail::find_cause(layers, poses, track, q_from);

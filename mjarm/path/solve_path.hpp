@@ -55,7 +55,7 @@ struct PathOptions {
 /// q_start is taken (see best_posture), then the shortest. Answers that `ik.options().valid`
 /// refuses are left out. An arm of six axes in closed form misses no track; any other is followed
 /// from the answers found for pose 0, a redundant one moving aside within itself where it gets
-/// tight. Same input, same answer.
+/// tight, and evenly along the whole path. Same input, same answer.
 ///
 /// Memory: 512 answers a pose at most, kept for 512 poses at a time, so that any number of poses
 /// needs under 100 MB besides its own input and output.

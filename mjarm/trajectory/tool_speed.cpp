@@ -136,13 +136,30 @@ std::vector<double> asked_speeds(const Curve& curve, const std::vector<Sample>& 
   return out;
 }
 
-/// The limit that allows the least share of the speed `asked` at a sample.
-void note_limit(const JointLimits& limits, double share, const Sample& at, const JointVec& f,
-                double asked, SpeedDip& dip) {
-  const std::array<JointVec, 3> use = {
-      asked * at.d.cwiseAbs().cwiseQuotient(share * limits.velocity),
-      asked * asked * at.e.cwiseAbs().cwiseQuotient(share * limits.acceleration),
-      asked * asked * asked * f.cwiseAbs().cwiseQuotient(limits.jerk)};
+/// What a motion takes of each limit.
+using Use = std::array<JointVec, 3>;
+
+/// What it would take of them at the speed `asked`, kept at a sample.
+Use use_at_speed(const JointLimits& limits, double share, const Sample& at, const JointVec& f,
+                 double asked) {
+  return {asked * at.d.cwiseAbs().cwiseQuotient(share * limits.velocity),
+          asked * asked * at.e.cwiseAbs().cwiseQuotient(share * limits.acceleration),
+          asked * asked * asked * f.cwiseAbs().cwiseQuotient(limits.jerk)};
+}
+
+/// What it takes of them at a time.
+Use use_at_time(const JointLimits& limits, double share, const Trajectory& trajectory, double t) {
+  constexpr double kAround = 2e-3;  // [s]
+  const double from = std::max(t - kAround, 0.0), to = std::min(t + kAround, trajectory.duration());
+  const JointState x = trajectory.at(t);
+  const JointVec jerk = (trajectory.at(to).a - trajectory.at(from).a) / (to - from);
+  return {x.v.cwiseAbs().cwiseQuotient(share * limits.velocity),
+          x.a.cwiseAbs().cwiseQuotient(share * limits.acceleration),
+          jerk.cwiseAbs().cwiseQuotient(limits.jerk)};
+}
+
+/// The limit that allows the least share of a speed.
+void note_limit(const Use& use, SpeedDip& dip) {
   for (std::size_t order = 0; order < use.size(); ++order) {
     int joint = 0;
     const double max = use[order].maxCoeff(&joint);
@@ -162,6 +179,7 @@ SpeedDip dip_of(const IkSolver& ik, const Trajectory& trajectory,
   constexpr std::size_t kWindow = 5;  // samples to either side for third derivatives
   constexpr double kNear = 0.05;      // smallest singular value
   constexpr double kSlowest = 1.02;   // of the lowest speed, where the limit is looked for
+  const JointLimits& limits = ik.arm().limits;
   const auto ratio = [&](std::size_t i) { return samples[i].rate / asked[i]; };
   std::size_t slowest = first;
   for (std::size_t i = first; i <= last; ++i) slowest = ratio(i) < ratio(slowest) ? i : slowest;
@@ -170,9 +188,13 @@ SpeedDip dip_of(const IkSolver& ik, const Trajectory& trajectory,
     const Sample &low = samples[i - std::min(i, kWindow)],
                  &high = samples[std::min(i + kWindow, samples.size() - 1)];
     const JointVec f = (high.e - low.e) / std::max(high.s - low.s, 1e-12);
-    note_limit(ik.arm().limits, share, samples[i], f, asked[i], all);
-    if (ratio(i) > kSlowest * ratio(slowest)) continue;
-    note_limit(ik.arm().limits, share, samples[i], f, asked[i], dip);
+    const Use use = use_at_speed(limits, share, samples[i], f, asked[i]);
+    note_limit(use, all);
+    if (ratio(i) <= kSlowest * ratio(slowest)) note_limit(use, dip);
+  }
+  if (dip.use <= 1) {  // it is on its way to that speed
+    dip.joint = -1;
+    note_limit(use_at_time(limits, share, trajectory, samples[slowest].t), dip);
   }
   dip.least = samples[slowest].rate;
   dip.s_least = samples[slowest].s;

@@ -23,9 +23,11 @@ struct SpeedDip {
   double t_from = 0, t_to = 0;  ///< [s]
   double least = 0;             ///< [m/s] lowest speed ([rad/s] in a turn on the spot)
   double s_least = 0;           ///< parameter of the curve where that is
-  int joint = -1;  ///< the one that would exceed a limit most there, at the speed asked for
+  /// The one that would exceed a limit most there, at the speed asked for; where none would, as the
+  /// tool is on its way to that speed, the one that is nearest to a limit.
+  int joint = -1;
   SpeedLimit limit = SpeedLimit::velocity;  ///< which one
-  double use = 0;   ///< share of that limit which the speed asked for would take there
+  double use = 0;  ///< share of that limit which the speed asked for would take, or the motion does
   double kept = 1;  ///< share of the speed asked for at which no joint would, all along the dip
   SingularKind kind = SingularKind::none;  ///< the singularity nearby, where there is one
 };

@@ -110,6 +110,21 @@ TEST(SpeedDips, AccelerationAndJerkAreToldApart) {
   }
 }
 
+/// At the speed asked for no joint would exceed a limit: it is getting there that takes long.
+TEST(SpeedDips, OnTheWayToASpeedWhatTheMotionTakesCounts) {
+  for (const bool jerk : {false, true}) {
+    const Arm arm = jerk ? slow_arm(50, 500, 3) : slow_arm(50, 0.3, 5000);
+    const auto motion = plan_tool_motion(IkSolver(arm), line_at(-0.4), kSeed,
+                                         {.timing = {.tool_speed = 0.1, .tool_accel = 5}});
+    ASSERT_TRUE(motion.has_value());
+    ASSERT_FALSE(motion->dips.empty());
+    const SpeedDip& first = motion->dips.front();
+    EXPECT_LT(first.t_from, 0.1);
+    EXPECT_EQ(first.limit, jerk ? SpeedLimit::jerk : SpeedLimit::acceleration);
+    EXPECT_NEAR(first.use, 1, 0.1);
+  }
+}
+
 TEST(KeepSpeed, FailsWithTheJointAndALowerSpeedWorks) {
   Arm arm = slow_arm(10);
   arm.limits.velocity[0] = 0.8;
