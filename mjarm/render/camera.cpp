@@ -9,6 +9,7 @@
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/units.hpp"
 #include "mjarm/render/clear_view.hpp"
+#include "mjarm/sim/sim.hpp"
 
 namespace mjarm::render {
 namespace {
@@ -35,13 +36,16 @@ Result<void> check_view(const CameraView& view) {
 CameraView default_view(const Model& model) {
   constexpr double kRoom = 1.2;  // round what moves, for its way
   constexpr double kTiny = 0.4;  // of the model's own distance
+  constexpr double kFar = 0.4;   // likewise; off what the model's own view looks at
   mjvCamera camera;
   mjv_defaultFreeCamera(model.raw(), &camera);
   const CameraView own{.lookat_W = Eigen::Map<const Eigen::Vector3d>(camera.lookat),
                        .distance = camera.distance,
                        .azimuth = camera.azimuth * kRadPerDeg,
                        .elevation = camera.elevation * kRadPerDeg};
-  const Snapshot start;
+  Sim sim(model);
+  sim.reset_home();
+  const Snapshot start = sim.snapshot();
   const std::vector<FramedBall> balls = moving_parts(model, {&start, 1});
   if (balls.empty()) return own;
   Eigen::Vector3d low = balls.front().p_W, high = low;
@@ -53,7 +57,9 @@ CameraView default_view(const Model& model) {
   const FramedBall round{0.5 * (low + high), 0.5 * kRoom * (high - low).norm()};
   const CameraView near =
       framing_view(model, {&round, 1}, {.azimuth = own.azimuth, .elevation = own.elevation});
-  return near.distance < kTiny * own.distance ? near : own;
+  const bool tiny = near.distance < kTiny * own.distance;
+  const bool aside = (round.p_W - own.lookat_W).norm() > kFar * own.distance;
+  return tiny || aside ? near : own;
 }
 
 std::vector<std::string> camera_names(const Model& model) {

@@ -27,7 +27,8 @@ struct Camera {
 };
 
 /// The free camera the model asks for (statistic and visual/global of an MJCF file); where what
-/// moves would be tiny in it, as in a large room, as near as shows that well.
+/// moves, as it stands at home, would be tiny in it, as in a large room, or far aside, as near as
+/// shows that well.
 [[nodiscard]] CameraView default_view(const Model& model);
 
 /// Names of the cameras of a model, in its order; those without a name are left out.

@@ -38,6 +38,20 @@ TEST_F(Cameras, DefaultIsWhatTheFileAsksFor) {
   EXPECT_GT(view.distance, 2);
 }
 
+TEST_F(Cameras, DefaultLooksWhereWhatMovesStandsAtHome) {
+  const std::string scene = R"(
+<mujoco>
+  <worldbody>
+    <geom type="plane" size="1 1 0.1"/>
+    <body><freejoint/><geom type="box" size="0.2 0.2 0.2"/></body>
+  </worldbody>
+  <keyframe><key name="home" qpos="5 -3 0.2 1 0 0 0"/></keyframe>
+</mujoco>)";
+  const Model model = Model::load(folder_.write("moved.xml", scene)).value();
+  const CameraView view = default_view(model);
+  EXPECT_TRUE(view.lookat_W.isApprox(Eigen::Vector3d(5, -3, 0.2), 0.1)) << view.lookat_W;
+}
+
 TEST_F(Cameras, NamesAreListed) {
   EXPECT_EQ(camera_names(model_), std::vector<std::string>{"overview"});
 }

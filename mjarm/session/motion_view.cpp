@@ -50,6 +50,7 @@ MotionOutline outline_of(const Recorder& recorder) {
 render::CameraView motion_view(const Model& model, const Arm& arm, const MotionOutline& outline,
                                bool film, double aspect) {
   Sim sim(model);
+  sim.reset_home();
   std::vector<Snapshot> moments;
   // A picture shows the end only.
   const std::size_t first = film || outline.postures.empty() ? 0 : outline.postures.size() - 1;

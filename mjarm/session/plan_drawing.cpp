@@ -35,6 +35,7 @@ render::Rgba with_alpha(render::Rgba color, float alpha) {
 }  // namespace
 
 void place_subject(Sim& sim, const PlanSubject& subject, const JointVec& q) {
+  sim.reset_home();
   sim.place(subject.arm, as_span(q));
   const Pose X_WT = fk(subject.arm, as_span(q));
   for (const AttachedBody& one : subject.rules.attached) sim.place_free(one.body, X_WT * one.X_TB);

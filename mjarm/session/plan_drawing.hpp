@@ -11,7 +11,7 @@
 
 namespace mjarm::session {
 
-/// Puts the arm at `q`, shape (dof,), and what is attached to it.
+/// Puts the arm at `q`, shape (dof,), and what is attached to it; all else stands at home.
 void place_subject(Sim& sim, const PlanSubject& subject, const JointVec& q);
 
 /// A path by the length travelled along it [rad or m, L2].

@@ -16,6 +16,7 @@
 #include "mjarm/render/offscreen.hpp"
 #include "mjarm/session/plan_player.hpp"
 #include "mjarm/session/plan_view.hpp"
+#include "tests/support/temp_folder.hpp"
 
 namespace mjarm::session {
 namespace {
@@ -378,6 +379,33 @@ TEST(PlanTool, IsBetweenTheOutermostSpheresWhereNoneIsNamed) {
   EXPECT_LT((with_tool(arm, set).X_JT.p - Eigen::Vector3d(0, 0, 0.2)).norm(), 1e-12);
   arm.tip = "tool0";
   EXPECT_EQ(with_tool(arm, set).X_JT.p, Eigen::Vector3d::Zero());
+}
+
+/// A cart that the keyframe has driven away, and a box on it.
+TEST(PlaceSubject, WhatIsNotTheArmStandsAtHome) {
+  const support::TempFolder folder;
+  const std::string file = folder.write("cart.xml", R"(
+<mujoco>
+  <worldbody>
+    <body name="cart" pos="0 0 0.1"><freejoint/><geom type="box" size="0.2 0.2 0.1" mass="9"/>
+      <body name="link" pos="0 0 0.2"><joint name="turn" axis="0 0 1" range="-3 3"/>
+        <geom type="capsule" fromto="0 0 0 0.3 0 0" size="0.03"/><site name="tcp" pos="0.3 0 0"/>
+      </body></body>
+    <body name="box" pos="0 0 1"><freejoint/><geom type="box" size="0.05 0.05 0.05"/></body>
+  </worldbody>
+  <actuator><position joint="turn" kp="100" kv="10"/></actuator>
+  <keyframe><key name="home" qpos="5 -3 0.1 1 0 0 0  0.5  4 4 0.05 1 0 0 0"/></keyframe>
+</mujoco>)");
+  const Robot robot = load_robot(file).value();
+  PlannedPath path;
+  path.q = {robot.arm.home};
+  const ModelCover cover = cover_model(robot.model, robot.arm).value();
+  const FastChecker checker =
+      FastChecker::create(FastRobot::create(robot.arm, cover.spheres).value(), cover.scene).value();
+  Sim sim(robot.model);
+  place_subject(sim, {robot.model, robot.arm, checker, cover.scene, path, ""}, robot.arm.home);
+  const std::vector<double> expected{5, -3, 0.1, 1, 0, 0, 0, 0.5, 4, 4, 0.05, 1, 0, 0, 0};
+  EXPECT_EQ(std::vector<double>(sim.qpos().begin(), sim.qpos().end()), expected);
 }
 
 }  // namespace
