@@ -36,9 +36,11 @@ struct WorkspaceMap {
   double v_first = 0;    ///< [m] middle of the first row
   double step = 0;       ///< [m]
   bool counted = false;  ///< false: the arm has joints to spare, so there is no number of answers
-  std::vector<int> branches = {};           ///< shape (rows, columns): answers apart from windings;
-                                            ///< 1 for any where they are not counted, 0 for none
-  std::vector<double> manipulability = {};  ///< likewise; the best of the answers, NaN for none
+  std::vector<int> branches = {};  ///< shape (rows, columns): answers apart from windings;
+                                   ///< 1 for any where they are not counted, 0 for none
+  /// Likewise; the best of the answers, where they are not counted that of the one found; NaN for
+  /// none.
+  std::vector<double> manipulability = {};
 
   /// [m] middle of a column, of a row.
   [[nodiscard]] double u_at(int column) const { return u_first + step * column; }

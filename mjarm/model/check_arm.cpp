@@ -27,10 +27,24 @@ Place limit_place(const CheckContext& context, const std::string& joint) {
   return place;
 }
 
-/// True where a range is written for a joint, though it may be switched off.
-bool has_range(const CheckContext& context, const std::string& joint) {
+/// The range that is written for a joint which has no limits; empty where there is none.
+std::vector<double> unused_range(const CheckContext& context, const std::string& joint) {
   const SourceNode* node = context.description.find("worldbody", "joint", joint);
-  return node != nullptr && context.description.setting(*node, "range").has_value();
+  if (node == nullptr) return {};
+  const auto range = context.description.setting(*node, "range");
+  return range ? numbers_in(range->value) : std::vector<double>();
+}
+
+void tell_no_limits(const CheckContext& context, const Place& place, const std::string& joint) {
+  const std::vector<double> range = unused_range(context, joint);
+  const bool any = range.size() == 2;
+  // MuJoCo takes such a range for none where nothing says that the joint is limited.
+  const std::string what = !any ? text(msg::check_limits_missing)
+                           : range[0] >= range[1]
+                               ? text(msg::check_range_reversed, range[0], range[1])
+                               : text(msg::check_limits_ignored);
+  context.add(any ? CheckCode::limits_ignored : CheckCode::limits_missing, Grade::warning, place,
+              what);
 }
 
 void check_limits(const CheckContext& context, int i) {
@@ -40,9 +54,7 @@ void check_limits(const CheckContext& context, int i) {
   const Place place = limit_place(context, joint.name);
   if (!std::isfinite(range)) {
     if (context.description.is_urdf()) return;  // told from the text
-    const bool off = has_range(context, joint.name);
-    context.add(off ? CheckCode::limits_ignored : CheckCode::limits_missing, Grade::warning, place,
-                text(off ? msg::check_limits_ignored : msg::check_limits_missing));
+    tell_no_limits(context, place, joint.name);
   } else if (joint.type == JointType::hinge && range < kTinyRange) {
     context.add(CheckCode::range_tiny, Grade::warning, place,
                 text(msg::check_range_tiny, range, range * 180 / 3.14159265358979));

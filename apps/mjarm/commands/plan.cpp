@@ -37,8 +37,7 @@ constexpr double kMaxSeconds = 3600;
 
 struct Options {
   BatchOptions batch;
-  std::string planner = "rrtc", seed = "1", threads = "1", samples, budget, limit, problem,
-              clearance;
+  std::string planner = "rrtc", seed = "1", threads, samples, budget, limit, problem, clearance;
   RobotRequest request;
   bool no_timing = false;
   PlanShowArguments show;
@@ -175,12 +174,14 @@ Result<int> run(const Options& options) {
   plan->keep_trees = show->has_value();
   plan->stop = interrupted;
   if (is_given(options.request)) {
-    if (!options.problem.empty()) {
-      return fail(Errc::usage, text(msg::app_exclusive_options, "--robot", "--problem"));
+    for (const auto& [name, value] :
+         {std::pair{"--problem", &options.problem}, {"--threads", &options.threads}}) {
+      if (value->empty()) continue;
+      return fail(Errc::usage, text(msg::app_exclusive_options, "--robot", name));
     }
     return plan_for_robot(options.request, *plan, *show, *output, !options.no_timing);
   }
-  const Result<int> threads = parse_threads(options.threads);
+  const Result<int> threads = parse_threads(options.threads.empty() ? "1" : options.threads);
   if (!threads) return fail(threads.error());
   Result<ProblemFile> file = read_problem_file(options.batch.in);
   if (!file) return fail(std::move(file.error()));

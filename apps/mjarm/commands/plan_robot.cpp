@@ -268,6 +268,10 @@ Result<int> plan_for_robot(const RobotRequest& request, const PlanOptions& optio
   choice.looks = show.has_value();
   const Result<Robot> robot = load_robot(choice);
   if (!robot) return fail(robot.error());
+  if (show && show->camera) {  // before a search of minutes
+    const Result<render::Camera> camera = show->camera(robot->model);
+    if (!camera) return fail(camera.error());
+  }
   const Result<Way> way = read_way(request, *robot);
   if (!way) return fail(way.error());
   PlanOptions how = options;

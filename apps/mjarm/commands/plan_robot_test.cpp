@@ -318,7 +318,9 @@ TEST_F(PlanRobot, WrongWordsGetOneLine) {
       {{"--start-region", "frame=start"}, "frame=start needs one start"},
       {{"--goal", "0,0,0,0,0,0", "--keep-within", "z=0"},
        "--keep-within: what the tool shall keep"},
-      {{"--goal", "0,0,0,0,0,0", "--in", "x.json"}, "--in and --robot"}};
+      {{"--goal", "0,0,0,0,0,0", "--in", "x.json"}, "--in and --robot"},
+      {{"--goal", "0,0,0,0,0,0", "--threads", "2"}, "--robot and --threads exclude"},
+      {{"--goal", kBehind, "--picture", "p.png", "--camera", "nose"}, "no camera \"nose\""}};
   for (const auto& [words, says] : wrong) {
     const auto result = plan(words);
     EXPECT_EQ(result.exit_code, 2) << says;

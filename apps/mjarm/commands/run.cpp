@@ -11,7 +11,9 @@
 #include "apps/mjarm/messages/app.hpp"
 #include "apps/mjarm/messages/demo.hpp"
 #include "apps/mjarm/messages/motion_program.hpp"
+#include "mjarm/core/file.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/core/output_folder.hpp"
 #include "mjarm/session/see_scene.hpp"
 
 namespace mjarm::app {
@@ -82,6 +84,25 @@ Result<std::optional<ContactReaction>> reaction_of(const Options& options) {
   return std::optional(*reaction);
 }
 
+/// Leaves a report of a program that cannot be done, in place of that of an earlier run.
+Result<int> refuse(const program::LoadedProgram& loaded, const session::StageOptions& options) {
+  Error why = program::first_fault(loaded);
+  if (why.code != Errc::impossible) return fail(std::move(why));
+  const Result<OutputFolder> folder = OutputFolder::open(options.out, options.replace);
+  if (!folder) return fail(folder.error());
+  session::remove_stale(options.out,
+                        {"log.csv", "plot.png", "plot.svg", "picture.png", session::kVideoFile});
+  Report report;
+  report.name = loaded.program.name;
+  report.model = loaded.robot.model.name();
+  report.reason = loaded.plan.faults.front().reason;
+  report.detail = why.what;
+  if (Result<void> kept = write_file(options.out / "report.json", to_json(report)); !kept) {
+    return fail(std::move(kept.error()));
+  }
+  return fail(std::move(why));
+}
+
 Result<int> run(const Options& options) {
   if (options.file.empty()) return fail(Errc::usage, text(msg::motion_program_which_run));
   const Result<double> tolerance = tolerance_of(options);
@@ -100,9 +121,11 @@ Result<int> run(const Options& options) {
   const Result<LongResult> free = LongResult::begin(chosen->out, chosen->replace);
   if (!free) return fail(free.error());  // before it is planned
   catch_interrupts();
-  Result<program::LoadedProgram> loaded = program::load_sound_program(
+  Result<program::LoadedProgram> loaded = program::load_program(
       options.file, interrupted, load_options(options.robot), session::see_scene, *payload);
   if (!loaded) return fail(loaded.error());
+  if (chosen->out.empty()) chosen->out = std::filesystem::path("mjarm-out") / loaded->program.name;
+  if (!loaded->plan.ok()) return refuse(*loaded, *chosen);
   const double duration = loaded->plan.duration();
   if (duration > *longest) {  // a slip of the pen, as a wait in milliseconds
     return fail(Errc::usage, text(msg::motion_program_too_long, options.file, duration, *longest,
@@ -110,7 +133,6 @@ Result<int> run(const Options& options) {
   }
   if (chosen->control) loaded->program.control = chosen->control;
   if (*reaction) loaded->program.contact = *reaction;
-  if (chosen->out.empty()) chosen->out = std::filesystem::path("mjarm-out") / loaded->program.name;
   const Result<Report> report = beside_what_shows(
       *pages, chosen->headless, [&] { return run_and_show(*loaded, *chosen, *tolerance); });
   if (!report) return fail(report.error());

@@ -45,6 +45,26 @@ void expect_whole_log(const std::string& csv) {
   for (const std::string& line : lines) ASSERT_EQ(std::ranges::count(line, ','), fields) << line;
 }
 
+TEST(RunFaults, AProgramThatCannotBeDoneLeavesNoReportOfTheOneBefore) {
+  const support::TempFolder folder;
+  const std::string out = (folder.path() / "out").string();
+  const auto run = [&](const std::string& place) {
+    const auto file = folder.write("cell.yaml", "robot: ur5e\nprogram:\n  - movej: {pos: " + place +
+                                                    ", euler: [180deg, 0, 0]}\n");
+    return mjarm({"run", file.string(), "--headless", "--out", out});
+  };
+  EXPECT_EQ(run("[0.4, -0.2, 0.4]").exit_code, 0);
+  EXPECT_TRUE(folder.exists("out/log.csv"));
+  EXPECT_EQ(run("[4, -0.2, 0.4]").exit_code, 1);
+  const auto report = support::load_json(folder.path() / "out" / "report.json");
+  EXPECT_EQ(report.at("ok"), false);
+  EXPECT_EQ(report.at("reason"), "out_of_reach");
+  EXPECT_FALSE(folder.exists("out/log.csv"));
+  // What is wrong with the file itself is no run.
+  EXPECT_EQ(run("[4, -0.2]").exit_code, 2);
+  EXPECT_EQ(support::load_json(folder.path() / "out" / "report.json"), report);
+}
+
 TEST(RunFaults, CtrlCEndsTheMotionAndLeavesWholeFiles) {
   const support::TempFolder folder;
   const auto result = disturbed(folder, "kill -INT $pid");

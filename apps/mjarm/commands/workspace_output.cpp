@@ -24,6 +24,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 /// How much of the slice is reached.
 struct Extent {
   int cells = 0;
+  bool has_axis = true;  ///< the first joint turns, so that there is an axis to stand off from
   double nearest = std::numeric_limits<double>::infinity();  ///< [m] from the first joint's axis
   double farthest = 0;                                       ///< [m]
 };
@@ -47,7 +48,7 @@ void each_cell(const WorkspaceReport& report, const See& see) {
 Extent extent_of(const WorkspaceReport& report) {
   const ArmJoint& base = report.arm.joints.front();
   const Eigen::Vector3d axis_W = base.X_PJ.R * base.axis;
-  Extent extent;
+  Extent extent{.has_axis = base.type == JointType::hinge};
   each_cell(report, [&](const Eigen::Vector3d& p_W, int branches, double) {
     if (branches == 0) return;
     const double distance = (p_W - base.X_PJ.p).cross(axis_W).norm();
@@ -111,8 +112,9 @@ render::Plot plot_of(const WorkspaceReport& report) {
   branches.field->whole_numbers = true;
   const int max = *std::max_element(map.branches.begin(), map.branches.end());
   branches.field->colors = {.lower = 1, .upper = std::max(max, 2) * 1.0};
-  render::PlotPanel manipulability =
-      panel_of(report, text(msg::workspace_manipulability), map.manipulability);
+  render::PlotPanel manipulability = panel_of(
+      report, text(map.counted ? msg::workspace_manipulability : msg::workspace_manipulability_one),
+      map.manipulability);
   const double best = std::transform_reduce(
       map.manipulability.begin(), map.manipulability.end(), 0.0,
       [](double a, double b) { return std::max(a, b); },
@@ -140,9 +142,11 @@ Result<WorkspaceFormat> workspace_format(const std::string& path) {
 
 std::string workspace_summary(const WorkspaceReport& report) {
   const Extent extent = extent_of(report);
-  return text(msg::workspace_line, report.arm.name, axis_name(report.work.normal), report.work.at,
-              orientation_text(report), extent.cells, report.map.step,
-              extent.cells * report.map.step * report.map.step, extent.nearest, extent.farthest);
+  const std::string line = text(msg::workspace_line, report.arm.name, axis_name(report.work.normal),
+                                report.work.at, orientation_text(report), extent.cells,
+                                report.map.step, extent.cells * report.map.step * report.map.step);
+  if (!extent.has_axis) return line;
+  return text(msg::workspace_ring, line, extent.nearest, extent.farthest);
 }
 
 std::string workspace_json(const WorkspaceReport& report) {
@@ -163,11 +167,9 @@ std::string workspace_json(const WorkspaceReport& report) {
   } else {
     json.value(nullptr);
   }
-  json.member("step", map.step)
-      .member("reached", extent.cells)
-      .member("nearest", extent.nearest)
-      .member("farthest", extent.farthest)
-      .member("columns", map.columns)
+  json.member("step", map.step).member("reached", extent.cells);
+  if (extent.has_axis) json.member("nearest", extent.nearest).member("farthest", extent.farthest);
+  json.member("columns", map.columns)
       .member("rows", map.rows)
       .member("axes", std::vector{axis_name(map.u), axis_name(map.v)})
       .member("first", std::vector{map.u_first, map.v_first})

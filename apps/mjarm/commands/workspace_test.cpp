@@ -52,6 +52,29 @@ TEST(Workspace, HasTheHoleRoundTheBase) {
   EXPECT_LT(map.at("farthest").get<double>(), 0.97);
 }
 
+/// Its first axis is no line to stand off from.
+TEST(Workspace, OfAnArmOnARailHasNoRing) {
+  const support::TempFolder folder;
+  const std::string arm = folder
+                              .write("rail.xml", R"(<mujoco><compiler angle="radian"/><worldbody>
+      <body name="sled" pos="0 0 0.2"><joint name="rail" type="slide" axis="1 0 0" range="-1 1"/>
+        <geom type="box" size="0.1 0.1 0.05"/>
+        <body name="upper"><joint name="turn" axis="0 0 1" range="-3 3"/>
+          <geom type="capsule" fromto="0 0 0 0.3 0 0" size="0.03"/>
+          <body name="lower" pos="0.3 0 0"><joint name="elbow" axis="0 0 1" range="-3 3"/>
+            <geom type="capsule" fromto="0 0 0 0.3 0 0" size="0.03"/>
+            <site name="tcp" pos="0.3 0 0"/></body></body></body>
+      </worldbody></mujoco>)")
+                              .string();
+  const auto result = mjarm({"workspace", "--robot", arm, "--slice", "z=0.2", "--out",
+                             (folder.path() / "map.json").string()});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ((result.out + result.err).find("base axis"), std::string::npos) << result.out;
+  const auto map = support::load_json(folder.path() / "map.json");
+  EXPECT_GT(map.at("reached"), 100);
+  EXPECT_FALSE(map.contains("nearest"));
+}
+
 /// Where no slice is asked for it is one that the arm reaches: this one ends 0.27 m above the
 /// floor.
 TEST(Workspace, OfASmallArmIsLower) {
