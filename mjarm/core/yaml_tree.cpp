@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -180,6 +182,63 @@ std::string fault_of(std::string_view words) {
   return text(msg::core_yaml_broken);
 }
 
+/// The innermost bracket that is still open where `line` begins, or that another one on it would
+/// close; none where there is no such. Texts in quotes and comments are left out.
+std::optional<std::pair<char, FilePlace>> open_bracket(std::string_view content, int line) {
+  std::vector<std::pair<char, FilePlace>> open;
+  std::size_t open_before = 0;
+  char quote = 0, before = '\n';  // the sign before, blanks left out
+  FilePlace at{1, 0};
+  for (std::size_t i = 0; i < content.size() && at.line <= line; ++i) {
+    const char sign = content[i];
+    constexpr unsigned kInside = 0x80;  // bytes of a character behind its first
+    if ((static_cast<unsigned>(sign) & 0xC0U) != kInside) ++at.column;
+    if (sign == '\n') {
+      if (++at.line == line) open_before = open.size();
+      at.column = 0;
+      if (quote == 0) before = sign;
+      continue;
+    }
+    const bool begins =
+        !open.empty() || std::string_view("\n:-,").find(before) != std::string::npos;
+    if (quote != 0) {
+      if (sign == quote) quote = 0;
+    } else if (sign == '#' &&
+               (i == 0 || std::string_view(" \t\n").find(content[i - 1]) != std::string::npos)) {
+      i = std::min(content.find('\n', i), content.size()) - 1;
+    } else if (begins && (sign == '"' || sign == '\'')) {
+      quote = sign;
+    } else if (begins && (sign == '{' || sign == '[')) {
+      open.emplace_back(sign, at);
+    } else if (!open.empty() && (sign == '}' || sign == ']')) {
+      if (open.back().first != (sign == '}' ? '{' : '[')) return open.back();
+      open.pop_back();
+      open_before = std::min(open_before, open.size());
+    }
+    if (sign != ' ') before = sign;
+  }
+  if (open_before == 0) return std::nullopt;
+  return open[open_before - 1];
+}
+
+/// What is wrong, and where: tabs and brackets by themselves, as a parser notices them too late.
+YamlFault fault_at(const std::string& content, const YAML::Exception& exception) {
+  const FilePlace place = place_of(exception.mark);
+  const auto what = [](Msg found) { return text(msg::core_yaml_syntax, text(found)); };
+  std::size_t begin = 0;
+  for (int line = 1; line < place.line; ++line) begin = content.find('\n', begin) + 1;
+  const std::size_t blanks = std::min(content.find_first_not_of(" \t", begin), content.size());
+  const std::size_t tab = content.find('\t', begin);
+  if (tab < blanks) {
+    return {{place.line, static_cast<int>(tab - begin) + 1}, what(msg::core_yaml_tab)};
+  }
+  if (const auto bracket = open_bracket(content, place.line)) {
+    return {bracket->second,
+            what(bracket->first == '{' ? msg::core_yaml_open_brace : msg::core_yaml_open_bracket)};
+  }
+  return {place, text(msg::core_yaml_syntax, fault_of(exception.msg))};
+}
+
 }  // namespace
 
 std::string at_place(std::string_view name, FilePlace place, std::string_view what) {
@@ -203,8 +262,7 @@ Result<YamlNode, YamlFault> read_yaml(const std::string& content) {
   } catch (const YamlFault& fault) {
     return tl::unexpected(fault);
   } catch (const YAML::Exception& exception) {
-    return tl::unexpected(
-        YamlFault{place_of(exception.mark), text(msg::core_yaml_syntax, fault_of(exception.msg))});
+    return tl::unexpected(fault_at(content, exception));
   }
 }
 

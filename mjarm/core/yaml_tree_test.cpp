@@ -61,7 +61,7 @@ TEST(YamlTree, FaultsHaveAPlaceInBothLanguages) {
   EXPECT_THAT(error_of("a: 1\na: 2"), HasSubstr("f.yaml:2:1: \"a\" stands here a second time"));
   EXPECT_THAT(error_of("[1, 2]: 3"), HasSubstr("f.yaml:1:1: expected a word"));
   EXPECT_THAT(error_of("a: 1\n---\nb: 2"), HasSubstr("f.yaml:3:1: expected one document"));
-  EXPECT_THAT(error_of("a: [1"), HasSubstr("no YAML: a [ that was opened before is not closed"));
+  EXPECT_THAT(error_of("a: [1"), HasSubstr("no YAML: a [ is not closed"));
   EXPECT_THAT(error_of(std::string(33, '[') + std::string(33, ']')), HasSubstr("32 levels"));
   EXPECT_EQ(error_of(std::string(32, '[') + std::string(32, ']')), "none");
   const LanguageScope chinese(Language::chinese);
@@ -73,14 +73,18 @@ TEST(YamlTree, NothingOfTheLibrarysOwnWordsIsLeft) {
   const std::pair<const char*, const char*> wrong[] = {
       {"a: b: c", "f.yaml:1:5: no YAML: a colon is not expected here"},
       {"a: 1\n  b: 2\n", "f.yaml:2:4: no YAML: a colon is not expected here"},
-      {"a: {x: 1\nb: 2\n", "no YAML: a { that was opened before is not closed"},
-      {"a: [1, 2\n", "no YAML: a [ that was opened before is not closed"},
+      {"a: {x: 1\nb: 2\n", "f.yaml:1:4: no YAML: a { is not closed"},
+      {"a: [1, 2\n", "f.yaml:1:4: no YAML: a [ is not closed"},
+      {"a:\n  - 臂: {x: [1], y: [2]\n  - b\n", "f.yaml:2:8: no YAML: a { is not closed"},
+      {"a: {x: [1, 2, y: 3}\nb: 2\n", "f.yaml:1:8: no YAML: a [ is not closed"},
+      {"a: 'it''s [' # {\nb: [x\n", "f.yaml:2:4: no YAML: a [ is not closed"},
+      {"a: {x: 1 y: 2}\n", "no YAML: "},
       {"a: ]\n", "no YAML: a bracket closes here that was not opened"},
       {"a: \"\\q\"\n", "no YAML: unknown escape"},
       {"a: @x\n", "no YAML: a sign stands here that can begin no value"},
       {"- a\n b: 2\n- c\n", "no YAML: "},
       {"a: *\n", "no YAML: expected a name after & or *"},
-      {"a:\n\t- 1\n", "no YAML: "},
+      {"a:\n\t- 1\n", "f.yaml:2:1: no YAML: a tab stands in the indentation"},
       {"a:\n  b: 1\n c: 2\n", "no YAML: this line is indented otherwise"},
       {"%YAML 3.0\n---\na: 1\n", "no YAML: lines that begin with % are directives"}};
   for (const auto& [text, says] : wrong) {

@@ -44,6 +44,10 @@ int conclude(const Report& report, const std::filesystem::path& out) {
   } else {
     log_info(text(msg::demo_ok, report.name));
   }
+  if (report.torque_use > 1) log_warning(text(msg::demo_torque, report.torque_use));
+  if (report.saturated_steps > 0) {
+    log_warning(text(msg::demo_saturated, report.saturated_steps, report.steps));
+  }
   if (report.rtf) log_info(text(msg::demo_rtf, report.duration, *report.rtf));
   std::printf("%s\n", text(msg::demo_folder, out.string()).c_str());
   return report.ok ? 0 : 1;
