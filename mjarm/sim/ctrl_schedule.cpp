@@ -96,7 +96,8 @@ Result<int> find_actuator(const Model& model, std::string_view name) {
   if (found != names.end()) return static_cast<int>(found - names.begin());
   for (int i = 0; i < model.nu(); ++i) {
     const char* real = mj_id2name(model.raw(), mjOBJ_ACTUATOR, i);
-    if ((real == nullptr || *real == '\0') && name == std::to_string(i)) return i;
+    const bool bare = real == nullptr || *real == '\0';
+    if (bare && (name == std::to_string(i) || name == "#" + std::to_string(i))) return i;
   }
   return fail(Errc::bad_input,
               text(msg::sim_unknown_actuator, name, did_you_mean(name, names), listed(names)));

@@ -128,6 +128,7 @@ TEST_F(Schedule, ActuatorsAreFoundByNameElseByNumber) {
   EXPECT_EQ(find_actuator(model_, "lift").value(), 1);
   EXPECT_EQ(find_actuator(model_, "actuator 3").value(), 3);
   EXPECT_EQ(find_actuator(model_, "3").value(), 3);
+  EXPECT_EQ(find_actuator(model_, "#3").value(), 3);  // as the model is described
   EXPECT_FALSE(find_actuator(model_, "1")) << "that one has a name";
   const Model still = Model::from_mjcf("<mujoco/>").value();
   EXPECT_THAT(find_actuator(still, "left").error().what, HasSubstr("no actuators"));

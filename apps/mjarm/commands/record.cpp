@@ -49,10 +49,10 @@ Result<episode::DatasetOptions> parsed(const Options& options) {
   if (!seed) return fail(seed.error());
   const Result<int> processes = parse_count("--processes", options.processes, 1024);
   if (!processes) return fail(processes.error());
-  constexpr int kMax = std::numeric_limits<int>::max();
-  const Result<int> size = parse_count("--size", options.size, kMax);
+  constexpr int kMax = std::numeric_limits<int>::max();  // check() knows what is possible
+  const Result<int> size = parse_count("--size", options.size, kMax, 0);
   if (!size) return fail(size.error());
-  const Result<int> fps = parse_count("--fps", options.fps, kMax);
+  const Result<int> fps = parse_count("--fps", options.fps, kMax, 0);
   if (!fps) return fail(fps.error());
   episode::DatasetOptions out{.episode = {.task = options.task,
                                           .robot = options.robot,

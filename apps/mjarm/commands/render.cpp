@@ -174,9 +174,8 @@ Result<int> run(const Options& options) {
   Result<PictureRequest> wanted = read_picture_options(options.picture);
   if (!wanted) return fail(wanted.error());
   if (!options.strip.empty()) {
-    const Result<int> count = parse_count("--strip", options.strip, kMostInStrip);
+    const Result<int> count = parse_count("--strip", options.strip, kMostInStrip, 2);
     if (!count) return fail(count.error());
-    if (*count < 2) return fail(Errc::usage, text(msg::render_command_strip_count, *count));
     wanted->strip = *count;
   }
   const auto result = LongResult::begin(options.picture.out, options.picture.replace);

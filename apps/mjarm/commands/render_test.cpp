@@ -283,7 +283,7 @@ TEST(RenderUsage, BadRequestsAreOneLine) {
       {{"ur5e", "--out", png, "--camera", "0,0,0"}, "distance"},
       {{"ur5e", "--out", png, "--strip", "4"}, "pictures of motion programs"},
       {{"ellipse", "--out", out("a.mp4"), "--strip", "4"}, "pictures of motion programs"},
-      {{"ellipse", "--out", png, "--strip", "1"}, "at least 2"},
+      {{"ellipse", "--out", png, "--strip", "1"}, "from 2 to 24"},
       {{"ellipse", "--out", png, "--strip", "25"}, "--strip"},
       {{"ur6e", "--out", png}, "ur5e"},
       {{"none.yaml", "--out", png}, "none.yaml"},
