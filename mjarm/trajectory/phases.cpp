@@ -60,6 +60,16 @@ Phases Phases::mirrored() const noexcept {
 
 /// The way is largest and smallest at its ends or where the velocity v + a x + jerk x^2 / 2 is 0:
 /// both of its roots, without cancellation.
+double Phases::way(double v) const noexcept {
+  double way = 0;
+  for (const JerkPhase& p : all()) {
+    const double t = p.duration;
+    way = way + t * (v + t * (0.5 * p.a + t / 6 * p.jerk));
+    v += t * (p.a + 0.5 * t * p.jerk);
+  }
+  return way;
+}
+
 Extent Phases::extent(double v) const noexcept {
   Extent out{0, 0, 0, v};
   for (const JerkPhase& p : all()) {

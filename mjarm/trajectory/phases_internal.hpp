@@ -27,6 +27,7 @@ class Phases {
     assert(count_ < kMax);
     all_[count_++] = {duration, a, jerk};
   }
+  void clear() noexcept { count_ = 0; }
   void append(const Phases& after) noexcept;
   /// The same way backwards in time: what led to a state when `before` starts in it with the
   /// opposite velocity.
@@ -37,6 +38,8 @@ class Phases {
   [[nodiscard]] Phases mirrored() const noexcept;
   /// @param v  [rad/s or m/s] velocity when they begin.
   [[nodiscard]] Extent extent(double v) const noexcept;
+  /// [rad or m] How far they lead, as `extent` has it.
+  [[nodiscard]] double way(double v) const noexcept;
 
  private:
   std::array<JerkPhase, kMax> all_;

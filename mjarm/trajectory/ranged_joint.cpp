@@ -28,7 +28,7 @@ Brake braking(const OneJoint& joint) noexcept {
   append_brake(joint, phases);
   if (phases.all().empty()) return {0, 0};
   const JerkPhase& last = phases.all().back();
-  return {phases.extent(joint.v0).way, last.a + last.duration * last.jerk};
+  return {phases.way(joint.v0), last.a + last.duration * last.jerk};
 }
 
 /// To rest: as fast as possible, or else with full braking and back, away from the limit.
@@ -88,7 +88,7 @@ RangedJoint::RangedJoint(const OneJoint& joint, const JointTimes& times, const R
     go_.emplace().append_reversed(*to_rest);
   }
   if (!stop_ || !go_) return;
-  const double way = joint.way - stop_->extent(joint.v0).way - go_->extent(0).way;
+  const double way = joint.way - stop_->way(joint.v0) - go_->way(0);
   const JointTimes move(leg(joint, 0, 0, 0, 0, way));
   stopping_from_ = stop_->duration() + move.first_possible(0) + go_->duration();
 }
@@ -103,51 +103,69 @@ std::optional<Phases> RangedJoint::blended(double duration) const noexcept {
   return out;
 }
 
-/// @param left  [rad or m] missing in the end. @return phases that are empty where the changes of
-///              velocity alone take longer.
-Phases RangedJoint::cruise_at(double v, double duration, double& left) const noexcept {
-  Phases out, back, none;
+/// @param left  [rad or m] missing in the end. @return false where the changes of velocity alone
+/// take
+///              longer.
+bool RangedJoint::cruise_at(double v, double duration, Phases& out, double& left) const noexcept {
+  Phases back;
+  out.clear();
   append_change(joint_, v, out);
   append_change(reversed(joint_), -v, back);
   const double time = duration - out.duration() - back.duration();
-  if (time < 0) return none;
+  if (time < 0) return false;
   out.add(time, 0, 0);
   out.append_reversed(back);
-  left = joint_.way - out.extent(joint_.v0).way;
-  return out;
+  left = joint_.way - out.way(joint_.v0);
+  return true;
 }
 
 /// Of all cruises of one duration the faster one goes farther, as its velocity is larger at all
-/// times; so bisection finds the one that goes as far as it has to. It starts at a velocity that is
-/// there with the least effort.
+/// times: one that goes as far as it has to lies between one that does not and one that goes
+/// farther or has no time for its changes of velocity. The search begins at a velocity that is
+/// there with the least effort: regula falsi (the Illinois form of M. Dowell, P. Jarratt, BIT 11
+/// (1971) 168), and halving where only one end is known.
 std::optional<Phases> RangedJoint::cruising(double duration) const noexcept {
+  constexpr double kExact = 1e-3;  // of what rounding may leave
+  constexpr int kSteps = 80, kHalve = 8;
   const double r = 0.5 * joint_.inverse_jerk;
   const double flat[] = {joint_.v0 + r * joint_.a0 * std::abs(joint_.a0),
                          joint_.v1 - r * joint_.a1 * std::abs(joint_.a1)};
   for (const double near : flat) {
-    double left = 0;
-    if (cruise_at(near, duration, left).all().empty()) continue;
-    const double sign = left > 0 ? 1 : -1;
+    double missing = 0;
+    Phases out;
+    if (!cruise_at(near, duration, out, missing)) continue;
+    const double sign = missing > 0 ? 1 : -1;
     double low = near, high = std::isfinite(joint_.v_max)
                                   ? sign * joint_.v_max
-                                  : near + 2 * left / std::max(duration, 1e-300) + sign;
-    constexpr int kHalvings = 80;
-    for (int i = 0; i < kHalvings && low != high; ++i) {
-      const double v = 0.5 * (low + high);
-      if (v == low || v == high) break;
-      const bool possible = !cruise_at(v, duration, left).all().empty();
-      (possible && sign * left >= 0 ? low : high) = v;
-    }
-    Phases out = cruise_at(low, duration, left);
+                                  : near + 2 * missing / std::max(duration, 1e-300) + sign;
     const double scale = joint_.noise + 1e-12 * (std::abs(joint_.way) + duration * std::abs(low));
-    if (std::abs(left) <= scale && fits(out)) return out;
+    double at_low = sign * missing, at_high = 0;  // the latter 0 where it is not known, else < 0
+    int moved = 0;  // the end that moved last: 1 for `low`, -1 for `high`
+    for (int i = 1; i <= kSteps && std::abs(missing) > kExact * scale; ++i) {
+      const bool halve = at_high == 0 || i % kHalve == 0;
+      const double share = halve ? 0.5 : at_low / (at_low - at_high);
+      const double v = low + share * (high - low);
+      if (v == low || v == high) break;
+      double left = 0;
+      const bool possible = cruise_at(v, duration, out, left);
+      if (possible && sign * left >= 0) {
+        if (moved == 1) at_high *= 0.5;
+        low = v, at_low = sign * left, moved = 1;
+        missing = left;
+      } else {
+        if (moved == -1) at_low *= 0.5;
+        high = v, at_high = possible ? sign * left : 0, moved = -1;
+      }
+    }
+    if (!(std::abs(missing) <= scale) || !cruise_at(low, duration, out, missing)) continue;
+    if (fits(out)) return out;
   }
   return std::nullopt;
 }
 
 std::optional<Phases> RangedJoint::stopping(double duration) const noexcept {
   if (!(duration >= stopping_from_ * (1 - kTimeRounding))) return std::nullopt;
-  const double way = joint_.way - stop_->extent(joint_.v0).way - go_->extent(0).way;
+  const double way = joint_.way - stop_->way(joint_.v0) - go_->way(0);
   const OneJoint rest = leg(joint_, 0, 0, 0, 0, way);
   Phases out = *stop_;
   const double time = duration - stop_->duration() - go_->duration();
@@ -224,7 +242,16 @@ std::optional<Phases> RangedJoint::turning(const Turn& turn, double duration) co
   return std::nullopt;
 }
 
+bool RangedJoint::find(double duration) noexcept {
+  if (auto found = motion(duration)) {
+    found_ = *found;
+    found_for_ = duration;
+  }
+  return found_for_ == duration;
+}
+
 std::optional<Phases> RangedJoint::motion(double duration) const noexcept {
+  if (duration == found_for_) return found_;
   if (auto out = blended(duration)) return out;
   if (auto out = cruising(duration)) return out;
   for (const std::optional<Turn>& turn : turns_) {
@@ -235,11 +262,11 @@ std::optional<Phases> RangedJoint::motion(double duration) const noexcept {
 }
 
 double RangedJoint::first_possible(double from) noexcept {
-  if (motion(from)) return from;
+  if (find(from)) return from;
   if (!looked_for_turns_) {
     turns_ = {fastest_turn(1), fastest_turn(-1)};
     looked_for_turns_ = true;
-    if (motion(from)) return from;
+    if (find(from)) return from;
   }
   double last = std::max(from, stopping_from_);
   for (const std::optional<Turn>& turn : turns_) {

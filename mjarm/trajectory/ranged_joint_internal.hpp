@@ -64,14 +64,18 @@ class RangedJoint {
   [[nodiscard]] std::optional<Phases> blended(double duration) const noexcept;
   [[nodiscard]] std::optional<Phases> cruising(double duration) const noexcept;
   [[nodiscard]] std::optional<Phases> stopping(double duration) const noexcept;
-  [[nodiscard]] Phases cruise_at(double v, double duration, double& left) const noexcept;
+  bool cruise_at(double v, double duration, Phases& out, double& left) const noexcept;
   [[nodiscard]] bool fits(const Phases& motion) const noexcept;
+  /// Keeps a motion of that duration, if one is found.
+  bool find(double duration) noexcept;
 
   OneJoint joint_;
   JointTimes times_;
   Room room_;
   std::array<std::optional<Turn>, 2> turns_;
   bool looked_for_turns_ = false;
+  Phases found_;                     // what was found last, as it is asked for again
+  double found_for_ = -1;            // [s]
   std::optional<Phases> stop_, go_;  // to rest, and from rest to the end
   double stopping_from_;             // [s] first duration with stops; infinity without
 };
