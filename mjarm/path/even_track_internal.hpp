@@ -7,10 +7,10 @@
 
 namespace mjarm::detail {
 
-/// Spreads the motion of a redundant arm within itself over the whole of a track: the tool stays
-/// where it is at each pose, and joints move evenly from the first answer to the last, which is
-/// free to move on. A search that steps aside where it gets tight does so all at once, for which a
-/// timed motion would nearly stop.
+/// Spreads what the arm does besides following its poses over the whole of a track: motions of a
+/// redundant arm within itself, and turns of the tool within the tolerance. Joints then move evenly
+/// from the first answer to the last, which is free to move on. A search does such things all at
+/// once where it gets tight, for which a timed motion would nearly stop.
 /// @param s      parameter of each pose, ascending.
 /// @param track  an answer to every pose; it stays as it is where an even one would be tighter.
 void even_out(const PathLayers& layers, std::span<const Pose> poses, std::span<const double> s,

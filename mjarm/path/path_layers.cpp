@@ -30,6 +30,9 @@ constexpr double kClearance = 0.01;  // [m]
 /// [rad or m] To the limits of a joint.
 double wanted_room(double range) { return std::min(kRoom, kRoomShare * range); }
 
+/// 0.5 where it is kClearance, 1 at contact and more beyond.
+double clearance_tightness(double clearance) { return 1 - clearance / (2 * kClearance); }
+
 double largest(const JointVec& d) { return d.cwiseAbs().maxCoeff(); }
 
 IkOptions without_predicate(IkOptions options) {
@@ -141,6 +144,13 @@ IkSolver without_limits(const IkSolver& ik) {
   return IkSolver(arm, ik.options());
 }
 
+Pose turned_to(const Pose& X_WT, const Eigen::Matrix3d& R_WT, double tol) {
+  if (tol == 0) return X_WT;
+  const Eigen::Vector3d turn = rotation_log(X_WT.R.transpose() * R_WT);
+  const double share = std::min(1.0, tol / std::max(turn.norm(), tol));
+  return {X_WT.p, X_WT.R * rotation_exp(share * turn)};
+}
+
 bool TrackRank::operator<(const TrackRank& other) const noexcept {
   return std::tie(tightness, posture, start, length) <
          std::tie(other.tightness, other.posture, other.start, other.length);
@@ -174,8 +184,11 @@ bool PathLayers::fits(const JointVec& q, double tightness) const {
 
 bool PathLayers::has_room(const JointVec& q, double tightness) const {
   if (!fits(q, tightness)) return false;
-  const auto here = room(q);
-  return here && level(here->tightness) <= tightness;
+  auto here = room(q);
+  if (!here) return false;
+  // A tool that may be turned aside passes a singularity best evenly, and so through it.
+  if (options_.orientation_tol > 0) here->tightness = clearance_tightness(here->clearance);
+  return level(here->tightness) <= tightness;
 }
 
 IkSolver PathLayers::within(double tightness) const {
@@ -217,7 +230,7 @@ std::optional<PathLayers::Room> PathLayers::room(const JointVec& q) const {
   if (options_.clearance) {
     out.clearance = options_.clearance(as_span(q)).distance;
     if (!(out.clearance >= 0)) return std::nullopt;
-    out.tightness = std::max(out.tightness, 1 - out.clearance / (2 * kClearance));
+    out.tightness = std::max(out.tightness, clearance_tightness(out.clearance));
   }
   return out;
 }

@@ -34,6 +34,9 @@ using Layer = std::vector<TrackNode>;
 /// For the same arm with joints that turn as far as they like.
 [[nodiscard]] IkSolver without_limits(const IkSolver& ik);
 
+/// X_WT turned to where the tool would rather stand, by no more than `tol` [rad].
+[[nodiscard]] Pose turned_to(const Pose& X_WT, const Eigen::Matrix3d& R_WT, double tol);
+
 /// Makes the answers to each pose out of those to the pose before.
 class PathLayers {
  public:
@@ -75,7 +78,8 @@ class PathLayers {
   [[nodiscard]] double smallest_singular_value(const JointVec& q) const;
   /// `q` is within the limits, and as far from them as a track of that tightness is.
   [[nodiscard]] bool fits(const JointVec& q, double tightness) const;
-  /// The same of all that tightness is about, but for the steps; and `q` is not refused.
+  /// The same of all that tightness is about, but for the steps, and with a tolerance for
+  /// singularities; and `q` is not refused.
   [[nodiscard]] bool has_room(const JointVec& q, double tightness) const;
   /// A solver from seeds whose limits are those that has_room() asks for.
   [[nodiscard]] IkSolver within(double tightness) const;

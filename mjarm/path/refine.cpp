@@ -5,6 +5,7 @@
 
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/link_chain.hpp"
+#include "mjarm/path/path_layers_internal.hpp"
 #include "mjarm/path/path_speed_internal.hpp"
 #include "mjarm/path/refine_internal.hpp"
 
@@ -64,6 +65,7 @@ class Refiner {
     append(path.s[0], path.q[0]);
     for (std::size_t i = 1; i < path.q.size() && !is_stopped(options_.path.stop); ++i) {
       cubic_ = cubic_after(path, i - 1);
+      tilt_ = std::max(tilt(path, i - 1), tilt(path, i));
       stretch(path.s[i - 1], path.q[i - 1], path.s[i], path.q[i], 0);
       append(path.s[i], path.q[i]);
     }
@@ -89,7 +91,16 @@ class Refiner {
     const Pose X = fk(chain_, as_span(JointVec((1 - t) * q0 + t * q1)));
     const Pose X_goal = options_.change(curve_.at((1 - t) * s0 + t * s1));
     return (X.p - X_goal.p).norm() <= options_.pos_tol &&
-           turned(X, X_goal) <= options_.rot_tol + options_.path.orientation_tol;
+           turned(X, X_goal) <= options_.rot_tol + tilt_;
+  }
+
+  /// How far the tool is turned aside at a waypoint.
+  [[nodiscard]] double tilt(const JointPath& path, std::size_t i) const {
+    const double tol = options_.path.orientation_tol;
+    if (tol == 0) return 0;
+    const Pose X = fk(chain_, as_span(path.q[i])), X_goal = options_.change(curve_.at(path.s[i]));
+    const double angle = angle_between(X.R, X_goal.R);
+    return angle > 2 * ik_.options().rot_tol ? std::min(angle, tol) : 0;
   }
 
   /// The angle between two poses, as far as the task is about it.
@@ -107,20 +118,12 @@ class Refiner {
     return angle_between(X.R, X_goal.R);
   }
 
-  /// The pose within the tolerance of X_WT whose orientation is nearest to that of `q`.
-  [[nodiscard]] Pose allowed(const Pose& X_WT, const JointVec& q) const {
-    const double tol = options_.path.orientation_tol;
-    if (tol == 0) return X_WT;
-    const Eigen::Vector3d turn = rotation_log(X_WT.R.transpose() * fk(chain_, as_span(q)).R);
-    const double share = std::min(1.0, tol / std::max(turn.norm(), tol));
-    return {X_WT.p, X_WT.R * rotation_exp(share * turn)};
-  }
-
   /// The answer between two others; none where the branch is lost.
   [[nodiscard]] std::optional<JointVec> between(double s, const JointVec& q0,
                                                 const JointVec& q1) const {
     const JointVec seed = cubic_.at(s);
-    const auto answer = ik_.solve(allowed(options_.change(curve_.at(s)), seed), as_span(seed));
+    const Pose X_WT = turned_to(options_.change(curve_.at(s)), fk(chain_, as_span(seed)).R, tilt_);
+    const auto answer = ik_.solve(X_WT, as_span(seed));
     if (!answer) return std::nullopt;
     const auto step = [&](const JointVec& q) { return (answer->q - q).cwiseAbs().maxCoeff(); };
     if (step(q0) > options_.path.max_step || step(q1) > options_.path.max_step) return std::nullopt;
@@ -162,7 +165,8 @@ class Refiner {
   LinkChain chain_;
   const Curve& curve_;
   const CurveOptions& options_;
-  Cubic cubic_;  // of the stretch at hand
+  Cubic cubic_;      // of the stretch at hand
+  double tilt_ = 0;  // [rad] how far the tool may be turned aside there: as at its ends
   Refined out_;
 };
 

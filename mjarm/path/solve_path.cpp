@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "mjarm/core/finite.hpp"
@@ -26,6 +27,30 @@ bool is_sound(const IkSolver& ik, std::span<const Pose> poses, std::span<const d
          std::isfinite(options.tool_speed);
 }
 
+/// The track found, evened out where it moves aside or tilts the tool.
+detail::Track even_track(const detail::PathLayers& layers, std::span<const Pose> poses,
+                         std::span<const double> s, const JointVec& q_from) {
+  detail::Track track = detail::find_track(layers, poses, q_from);
+  const bool whole = track.size() == poses.size();
+  if (whole && (track.last.front().aside || layers.options().orientation_tol > 0)) {
+    detail::even_out(layers, poses, s, track);
+  }
+  return track;
+}
+
+/// The track without any tilt, where it has room enough: none is better then.
+std::optional<JointPath> upright(const IkSolver& ik, std::span<const Pose> poses,
+                                 std::span<const double> s, const JointVec& q_from,
+                                 PathOptions options) {
+  options.orientation_tol = 0;
+  const detail::PathLayers layers(ik, options);
+  detail::Track track = even_track(layers, poses, s, q_from);
+  if (track.size() < poses.size() || track.last.front().rank.tightness > options.comfort) {
+    return std::nullopt;
+  }
+  return JointPath{{s.begin(), s.end()}, std::move(track.q)};
+}
+
 }  // namespace
 
 Result<JointPath, PathFailure> solve_path(const IkSolver& ik, std::span<const Pose> poses,
@@ -39,13 +64,14 @@ Result<JointPath, PathFailure> solve_path(const IkSolver& ik, std::span<const Po
     return fail(std::move(failure));
   }
   const JointVec q_from = clamp_to_limits(ik.arm(), q_start);
+  if (options.orientation_tol > 0) {
+    if (auto path = upright(ik, poses, s, q_from, options)) return std::move(*path);
+  }
   const detail::PathLayers layers(ik, options);
-  detail::Track track = detail::find_track(layers, poses, q_from);
-  const bool whole = track.size() == poses.size();
-  if (whole && track.last.front().aside) detail::even_out(layers, poses, s, track);
+  detail::Track track = even_track(layers, poses, s, q_from);
   const auto known = s.first(track.size());
   JointPath path{{known.begin(), known.end()}, std::move(track.q)};
-  if (whole) return path;
+  if (path.q.size() == poses.size()) return path;
   track.q = path.q;
   PathFailure failure;
   if (!track.is_stopped) failure = detail::find_cause(layers, poses, track, q_from);

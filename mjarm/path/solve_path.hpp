@@ -36,7 +36,8 @@ struct PathOptions {
   /// taken, and only of equals the one that starts nearest to q_start.
   bool best_posture = false;
   /// [rad] The tool may stand so much aside of the given orientations, >= 0 and < pi/2: lets it
-  /// pass a wrist singularity. Answers turned about the tool's x, y and z axes are tried besides.
+  /// pass a wrist singularity. Where there is room enough without, it does not turn at all; else it
+  /// does so little by little along the path.
   double orientation_tol = 0;
   /// [m/s] The tool is to keep this speed, without regard to accelerations (turns on the spot:
   /// [rad/s]), >= 0: no joint may be faster than its limit for it. 0: it may go as slowly as need

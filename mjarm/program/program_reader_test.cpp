@@ -153,7 +153,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"text: {text: A, pos: [0, 0, 0], right: [0, 1, 0], euler: [0, 0, 0]}", "3:11",
               "parallel"},
         Wrong{"wait", "3:5", "one instruction"}, Wrong{"{wait: 1, grip: open}", "3:5", "one"},
-        Wrong{"wait: 1\n    wait: 2", "4:5", "second time"}, Wrong{"wait: [1", "4:1", "YAML"},
+        Wrong{"wait: 1\n    wait: 2", "4:5", "second time"}, Wrong{"wait: [1", "3:11", "YAML"},
         Wrong{"wait: *nothing", "3:11", "YAML"}));
 
 std::string error_of(const std::string& text) {

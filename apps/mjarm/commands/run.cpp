@@ -84,10 +84,14 @@ Result<std::optional<ContactReaction>> reaction_of(const Options& options) {
   return std::optional(*reaction);
 }
 
-/// Leaves a report of a program that cannot be done, in place of that of an earlier run.
+/// A program that cannot be done makes no folder; where there is one, a report of it takes the place
+/// of that of an earlier run.
 Result<int> refuse(const program::LoadedProgram& loaded, const session::StageOptions& options) {
   Error why = program::first_fault(loaded);
-  if (why.code != Errc::impossible) return fail(std::move(why));
+  std::error_code missing;
+  if (why.code != Errc::impossible || !std::filesystem::exists(options.out, missing)) {
+    return fail(std::move(why));
+  }
   const Result<OutputFolder> folder = OutputFolder::open(options.out, options.replace);
   if (!folder) return fail(folder.error());
   session::remove_stale(options.out,
