@@ -19,6 +19,7 @@ constexpr unsigned kGlExtensions = 0x1F03;  // GL_EXTENSIONS
 
 constexpr int kNone = -1;
 std::atomic<int> claimed_kind{kNone};
+std::atomic<long> drawing_process{0};  // its number; in a copy of it (fork) drivers wait for ever
 
 std::optional<GlKind> claimed() {
   const int kind = claimed_kind.load();
@@ -71,6 +72,10 @@ Result<void> claim_gl(GlKind kind) {
 }
 
 Result<GlContext> GlContext::create(GlChoice choice) {
+  const long process = process_id(), drawing = drawing_process.load();
+  if (drawing != 0 && drawing != process) {
+    return fail(Errc::not_available, text(msg::render_gl_forked, drawing));
+  }
   const std::vector<GlKind> kinds = wanted_kinds(choice);
   std::vector<std::string> reasons;
   for (const GlKind kind : kinds) {
@@ -80,6 +85,7 @@ Result<GlContext> GlContext::create(GlChoice choice) {
       continue;
     }
     if (Result<void> claim = claim_gl(kind); !claim) return fail(std::move(claim.error()));
+    drawing_process = process;
     (*context)->publish();
     return GlContext(std::move(*context));
   }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "mjarm/control/controller.hpp"
+#include "mjarm/core/finite.hpp"
 #include "mjarm/execution/motion_plan.hpp"
 #include "mjarm/model/joint_values.hpp"
 #include "python/src/bindings.hpp"
@@ -66,6 +67,7 @@ class BoundController {
       refuse(msg::python_no_data, "time");
     }
     const std::span<const double> q = qpos.span();
+    if (!all_finite(q) || !all_finite(qvel.span())) refuse(msg::python_not_finite_state);
     const StepReference reference = next(q, time);
     return controller_.command(q, qvel.span(), reference, ctrl.span());
   }

@@ -174,7 +174,11 @@ nb::object jacobian(const BoundRobot& robot, nb::handle q) {
   const auto dof = static_cast<std::size_t>(robot.dof());
   const NewArray<double> rows({6, dof});
   using RowMajor = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor>;
-  Eigen::Map<RowMajor>(rows.data, 6, robot.dof()) = fk_jacobian(robot.arm(), as_span(values)).J_W;
+  Jacobian J_W = fk_jacobian(robot.arm(), as_span(values)).J_W;
+  const Eigen::Matrix3d R = robot.moved_base(q).R;
+  J_W.topRows<3>() = R * J_W.topRows<3>();
+  J_W.bottomRows<3>() = R * J_W.bottomRows<3>();
+  Eigen::Map<RowMajor>(rows.data, 6, robot.dof()) = J_W;
   return rows.object;
 }
 
@@ -195,7 +199,16 @@ void bind_answers(nb::module_& m) {
       .def_ro("pos_err", &IkSolution::pos_err, "Distance to the goal [m].")
       .def_ro("rot_err", &IkSolution::rot_err, "Angle to the goal [rad].")
       .def_ro("iterations", &IkSolution::iterations, "Steps taken in all; 0 in closed form.")
-      .def_ro("restarts", &IkSolution::restarts, "Random starts used; 0: solved from the seed.");
+      .def_ro("restarts", &IkSolution::restarts, "Random starts used; 0: solved from the seed.")
+      .def("__getstate__",  // with it what a worker process raises comes whole
+           [](const IkSolution& s) {
+             return nb::make_tuple(array(s.q), s.pos_err, s.rot_err, s.iterations, s.restarts);
+           })
+      .def("__setstate__", [](IkSolution& s, const nb::tuple& state) {
+        new (&s) IkSolution{joint_vec(reals(state[0], "q").span()), nb::cast<double>(state[1]),
+                            nb::cast<double>(state[2]), nb::cast<int>(state[3]),
+                            nb::cast<int>(state[4])};
+      });
   nb::enum_<SingularKind>(m, "SingularKind", "Which part of an arm loses a direction of motion.")
       .value("none", SingularKind::none)
       .value("shoulder", SingularKind::shoulder)
@@ -300,7 +313,7 @@ void bind_kinematics(nb::module_& m) {
       .def(
           "fk",
           [](const BoundRobot& r, nb::handle q) {
-            return fk(r.ik.links(), as_span(r.joints(q, "q")));
+            return r.moved_base(q) * fk(r.ik.links(), as_span(r.joints(q, "q")));
           },
           nb::arg("q"), nb::sig("def fk(self, q: ArrayLike) -> Pose"),
           "Pose of the tool in the world at joint values `q` [rad or m], shape (dof,), or at the "

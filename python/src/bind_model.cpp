@@ -32,6 +32,15 @@ JointVec BoundRobot::joints(std::span<const double> values, const char* name) co
   return q;
 }
 
+Pose BoundRobot::moved_base(nb::handle value) const {
+  if (!base) return {};
+  const Reals given = reals(value, "q");
+  const auto nq = static_cast<std::size_t>(robot.model.nq());
+  if (given.ndim() != 1 || given.size() != nq || nq == static_cast<std::size_t>(dof())) return {};
+  const Pose X_home = value_of(frame_pose(robot.model, *base));
+  return value_of(frame_pose(robot.model, *base, given.span())) * X_home.inverse();
+}
+
 JointVec BoundRobot::joints_or_home(nb::handle value, const char* name) const {
   return value.is_none() ? arm().home : joints(value, name);
 }
@@ -45,7 +54,10 @@ std::vector<JointVec> BoundRobot::waypoints(nb::handle value, const char* name) 
   const std::vector<double> values = rows(value, name);
   const auto n = static_cast<std::size_t>(dof());
   std::vector<JointVec> out;
-  for (std::size_t i = 0; i < values.size(); i += n) out.push_back(joint_vec({&values[i], n}));
+  for (std::size_t i = 0; i < values.size(); i += n) {
+    out.push_back(joint_vec({&values[i], n}));
+    value_of(check_joint_units(as_span(out.back()), arm()));
+  }
   return out;
 }
 
@@ -65,10 +77,16 @@ std::vector<double> qpos_of(nb::handle value, const Model& model) {
 
 namespace {
 
+/// Other classes of MuJoCo's package have an address as well.
+bool is_mujoco_model(nb::handle object) {
+  return nb::hasattr(object, "_address") &&
+         nb::cast<std::string>(object.type().attr("__name__")) == "MjModel";
+}
+
 /// A name, a path, or a mujoco.MjModel.
 Robot load(nb::handle model, const std::string& tip, bool allow_outside, bool looks,
            const std::vector<std::filesystem::path>& packages) {
-  if (nb::hasattr(model, "_address")) {
+  if (is_mujoco_model(model)) {
     const auto address = nb::cast<std::uintptr_t>(model.attr("_address"));
     Model copy = Model::copy_of(reinterpret_cast<const mjModel_*>(address));
     Arm arm = value_of(find_arm(copy, {.tip = tip}));

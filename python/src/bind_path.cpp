@@ -120,8 +120,11 @@ Curve ellipse(nb::handle center, double a, double b, nb::handle normal, nb::hand
        .R = nb::cast<const Pose&>(rotation).R}));
 }
 
-std::vector<Pose> poses_at(const Curve& curve, nb::handle s) {
-  return curve.poses(reals(s, "s", {-1}).span());
+/// One pose for a number, a list for an array.
+nb::object poses_at(const Curve& curve, nb::handle s) {
+  const Reals given = reals(s, "s");
+  if (given.ndim() == 0) return nb::cast(curve.at(*given.data()));
+  return nb::cast(curve.poses(reals(s, "s", {-1}).span()));
 }
 
 void bind_curve(nb::module_& m) {

@@ -52,6 +52,21 @@ PlannedMove time_plan(const BoundPlan& plan, const JointLimits& limits) {
           .attached = plan.rules.attached};
 }
 
+/// Splines through waypoints know no ranges of joints: a motion that leaves one is refused.
+void check_range(const BoundRobot& robot, const Trajectory& motion) {
+  constexpr double kRounding = 1e-4;  // [rad or m] of waypoints that stand at a limit
+  const LimitUse use = [&] {
+    const nb::gil_scoped_release free;
+    return check_limits(motion, robot.arm().limits);
+  }();
+  int joint = 0;
+  const double beyond = use.position.maxCoeff(&joint);
+  if (!(beyond > kRounding)) return;
+  const ArmJoint& leaving = robot.arm().joints[static_cast<std::size_t>(joint)];
+  const char* const unit = leaving.type == JointType::hinge ? "rad" : "m";
+  raise(Error{Errc::impossible, text(msg::python_leaves_range, leaving.name, beyond, unit)});
+}
+
 PlannedMove time(const BoundRobot& robot, nb::handle what, double tool_speed, double share) {
   if (!(share > 0 && share <= 1)) refuse(msg::python_share, "share");
   if (!(tool_speed > 0)) refuse(msg::python_positive, "tool_speed");
@@ -64,7 +79,12 @@ PlannedMove time(const BoundRobot& robot, nb::handle what, double tool_speed, do
   limits.acceleration *= share;
   if (nb::isinstance<BoundPlan>(what)) return time_plan(nb::cast<const BoundPlan&>(what), limits);
   const std::vector<JointVec> rows = robot.waypoints(what, "motion");
-  return {.word = "joints", .trajectory = value_of(time_waypoint_path(rows, limits))};
+  PlannedMove move{.word = "joints", .trajectory = value_of([&] {
+                                       const nb::gil_scoped_release free;
+                                       return time_waypoint_path(rows, limits);
+                                     }())};
+  check_range(robot, move.trajectory);
+  return move;
 }
 
 /// A motion, and when each waypoint is met.
@@ -75,6 +95,7 @@ nb::tuple time_via(const BoundRobot& robot, nb::handle waypoints, double share) 
     const nb::gil_scoped_release free;
     return time_via_points(rows, robot.arm().limits, {.joint_share = share});
   }());
+  check_range(robot, motion.trajectory);
   return nb::make_tuple(PlannedMove{.word = "via", .trajectory = std::move(motion.trajectory)},
                         array(std::move(motion.times), {rows.size()}));
 }
@@ -108,8 +129,10 @@ nb::dict use_of(const PlannedMove& move, const JointLimits& limits) {
 nb::tuple states(const Trajectory& motion, const std::vector<double>& times) {
   const auto dof = static_cast<std::size_t>(motion.dof());
   std::vector<double> q, v, a;
-  for (const double t : times) {
-    const JointState state = motion.at(t);
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    constexpr std::size_t kBlock = 4096;  // between looks at Ctrl-C
+    if (i % kBlock == 0 && PyErr_CheckSignals() != 0) throw nb::python_error();
+    const JointState state = motion.at(times[i]);
     q.insert(q.end(), state.q.begin(), state.q.end());
     v.insert(v.end(), state.v.begin(), state.v.end());
     a.insert(a.end(), state.a.begin(), state.a.end());

@@ -2,14 +2,34 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <exception>
+#include <typeinfo>
+
 #include "apps/mjarm/cli/cli.hpp"
 #include "apps/mjarm/commands/commands.hpp"
 #include "mjarm/model/mujoco_library.hpp"
+#include "python/messages/python.hpp"
 #include "python/src/bindings.hpp"
+#include "python/src/convert.hpp"
+
+namespace {
+
+/// What a cast inside a call finds wrong, as any other bad input.
+void tell_bad_cast(const std::exception_ptr& thrown, void*) {
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const std::bad_cast&) {
+    const nanobind::object kind = mjarm::python::error_class("BadInput");
+    PyErr_SetString(kind.ptr(), mjarm::text(mjarm::msg::python_other_type).c_str());
+  }
+}
+
+}  // namespace
 
 NB_MODULE(_core, m) {
   using namespace mjarm;
   namespace nb = nanobind;
+  nb::register_exception_translator(tell_bad_cast);
   m.attr("__doc__") = "The C++ part of mjarm; use the package `mjarm`.";
   m.attr("__version__") = MJARM_VERSION;
   m.def(

@@ -146,3 +146,12 @@ def test_robust_control_carries_what_nobody_told_it_of(world):
     assert errors["robust"] < 1e-5 < errors["computed_torque"]
     with pytest.raises(mjarm.Error):
         robot.controller("robust", late_steps=21)
+
+
+def test_a_state_that_is_no_number_is_refused(world):
+    model, data = world
+    controller = mjarm.Robot(model).controller()
+    data.qpos[0] = np.nan
+    with pytest.raises(mjarm.BadInput, match="finite"):
+        controller.step(data)
+    assert np.isfinite(data.ctrl).all()

@@ -17,6 +17,8 @@ def test_curves_are_walked_by_their_length():
     assert line.length == pytest.approx(0.5) and line.end == line.length
     assert line.at(0.25).difference(a.interpolate(b, 0.5)) == pytest.approx((0, 0), abs=1e-12)
     assert [pose.pos[0] for pose in line.at([0, 0.5])] == pytest.approx([0, 0.3])
+    for s in (0, np.int64(0), np.float32(0), np.array(0.0), 0.0):
+        assert line.at(s).difference(a) == pytest.approx((0, 0), abs=1e-12)
     assert len(line.poses(7)) == 7
     circle = mjarm.Curve.ellipse([0, 0, 0.4], 0.1, 0.1)
     assert circle.length == pytest.approx(2 * np.pi * 0.1)

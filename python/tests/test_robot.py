@@ -1,5 +1,7 @@
 """Robots: files, joints, kinematics; against MuJoCo's own."""
 
+import pickle
+
 import mujoco
 import numpy as np
 import pytest
@@ -165,3 +167,54 @@ def test_a_model_of_others(tmp_path):
     assert robot.joints == ["a", "b"]
     np.testing.assert_allclose(robot.fk([0, 0]).pos, [0.5, 0, 0], atol=1e-15)
     np.testing.assert_allclose(robot.ik(mjarm.Pose([0, 0.5, 0]), task="position").q[0], np.pi / 2, atol=1e-6)
+
+
+def test_what_is_no_model_is_refused():
+    model = mujoco.MjModel.from_xml_path(str(mjarm.Robot("ur5e").file))
+
+    class Address:
+        _address = 0
+
+    for other in (mujoco.MjData(model), mujoco.MjSpec(), Address()):
+        with pytest.raises(TypeError):
+            mjarm.Robot(other)
+    with pytest.raises(mjarm.BadInput, match="another type"):
+        mjarm.Robot(b"ur5e")
+
+
+CART = """
+<mujoco>
+  <worldbody>
+    <body name="cart" pos="0 0 0.1"><freejoint/><geom type="box" size="0.2 0.2 0.1"/>
+      <body name="link" pos="0 0 0.2"><joint name="turn" axis="0 0 1" range="-3 3"/>
+        <geom type="capsule" fromto="0 0 0 0.3 0 0" size="0.03"/><site name="tcp" pos="0.3 0 0.1"/>
+      </body></body>
+  </worldbody>
+  <keyframe><key name="home" qpos="5 -3 0.1 1 0 0 0  0.5"/></keyframe>
+</mujoco>
+"""
+
+
+def test_a_free_base_stands_where_qpos_has_it(tmp_path):
+    file = tmp_path / "cart.xml"
+    file.write_text(CART)
+    robot = mjarm.Robot(file)
+    data = mujoco.MjData(mujoco.MjModel.from_xml_path(str(file)))
+    data.qpos[:] = [1, 2, 0.3, *mjarm.Pose([0, 0, 0], euler=[0.1, 0.2, 0.9]).quat, 0.7]
+    mujoco.mj_forward(data.model, data)
+    tool = robot.fk(data.qpos)
+    np.testing.assert_allclose(tool.pos, data.site("tcp").xpos, atol=1e-12)
+    np.testing.assert_allclose(tool.matrix[:3, :3].ravel(), data.site("tcp").xmat, atol=1e-12)
+    jacobian = np.zeros((6, 7))
+    mujoco.mj_jacSite(data.model, data, jacobian[:3], jacobian[3:], data.site("tcp").id)
+    np.testing.assert_allclose(robot.jacobian(data.qpos)[:, 0], jacobian[:, 6], atol=1e-12)
+
+
+def test_answers_and_refusals_go_to_other_processes(robot):
+    answer = robot.ik(robot.fk(robot.home))
+    again = pickle.loads(pickle.dumps(answer))
+    np.testing.assert_array_equal(again.q, answer.q)
+    assert (again.pos_err, again.rot_err, again.iterations) == (answer.pos_err, answer.rot_err, answer.iterations)
+    with pytest.raises(mjarm.Unreachable) as refused:
+        robot.ik(mjarm.Pose([5, 0, 0]))
+    assert str(pickle.loads(pickle.dumps(refused.value))) == str(refused.value)

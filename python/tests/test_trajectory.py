@@ -100,3 +100,15 @@ def test_waypoints_without_a_stop(robot):
     stopping = sum(robot.time([a, b]).duration for a, b in zip(waypoints, waypoints[1:]))
     assert motion.duration < 0.95 * stopping
     assert np.abs(motion.at(times[1])[1]).max() > 0.05
+
+
+def test_rows_keep_the_joints_in_their_ranges(robot):
+    rows = np.array([robot.home] * 4)
+    rows[:, 0] = [0, 1, 2, 3]
+    rows[:, 2] = [1.57, 3.14, 3.10, 1]  # splines go beyond the second
+    for time in (robot.time, robot.time_via):
+        with pytest.raises(mjarm.Impossible, match=r"elbow_joint would be 0\.[01].* rad beyond its limits"):
+            time(rows)
+        with pytest.raises(mjarm.BadInput, match="angles are in radians"):
+            time([robot.home, 57 * robot.home])
+        time([robot.home, robot.home + 0.3, robot.home - 0.2])

@@ -1,5 +1,6 @@
 """The window beside a loop of one's own; where there is no display, it says so."""
 
+import multiprocessing
 import os
 import time
 
@@ -63,3 +64,18 @@ def test_without_a_display_it_says_so(world):
             mjarm.view(world[0])
     finally:
         os.environ.update({name: value for name, value in kept.items() if value is not None})
+
+
+def draw(_):
+    try:
+        return len(mjarm.Robot("ur5e").picture(width=32, height=32))
+    except mjarm.NotAvailable as why:
+        return str(why)
+
+
+def test_a_copy_of_a_process_that_has_drawn_says_why_it_cannot():
+    drawn = draw(0)
+    if isinstance(drawn, str):
+        pytest.skip(drawn)
+    with multiprocessing.get_context("fork").Pool(1) as pool:
+        assert "spawn" in pool.map_async(draw, [1]).get(timeout=60)[0]
