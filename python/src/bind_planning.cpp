@@ -286,7 +286,8 @@ void bind_planning(nb::module_& m) {
                    "(), allowed: "
                    "Sequence[tuple[str, str]] = ()) -> CollisionReport"),
            "What the arm touches at `q` [rad or m], by MuJoCo's own shapes; true where nothing "
-           "overlaps.")
+           "overlaps. What is within\n"
+           "`margin` [m] is measured as well; 0 is quicker by far where only touching counts.")
       .def("plan", &plan, nb::arg("start").none(), nb::arg("goal"), nb::kw_only(),
            nb::arg("held") = Names(), nb::arg("allowed") = Pairs(),
            nb::arg("upright").none() = nb::none(), nb::arg("within").none() = nb::none(),

@@ -6,8 +6,10 @@
 #include <optional>
 #include <utility>
 
+#include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/branch.hpp"
 #include "mjarm/kinematics/compare.hpp"
+#include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/manipulability_ellipsoid.hpp"
 #include "mjarm/kinematics/self_motion.hpp"
 #include "mjarm/kinematics/workspace.hpp"
@@ -30,8 +32,14 @@ IkSolution null_space(const BoundRobot& robot, nb::handle pose, nb::handle q,
   } else if (goal != "away_from_limits") {
     refuse(msg::python_posture_goal, goal);
   }
-  const auto answer =
-      null_space_step(robot.ik, pose_of(pose, "pose"), as_span(robot.joints(q, "q")), options);
+  const Pose X_WT = pose_of(pose, "pose");
+  const JointVec from = robot.joints(q, "q");
+  const auto answer = null_space_step(robot.ik, X_WT, as_span(from), options);
+  const Pose X = fk(robot.arm(), as_span(from));
+  const double off = (X.p - X_WT.p).norm(), turned = angle_between(X.R, X_WT.R);
+  if (!answer && (off > robot.ik.options().pos_tol || turned > robot.ik.options().rot_tol)) {
+    refuse(msg::python_not_at_pose, off, turned);
+  }
   if (!answer) raise_bad_input(describe(answer.error(), robot.arm()));
   return *answer;
 }

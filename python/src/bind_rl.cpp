@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "mjarm/core/nearest_word.hpp"
 #include "mjarm/model/model.hpp"
 #include "mjarm/render/offscreen.hpp"
 #include "mjarm/rl/evaluate.hpp"
@@ -134,8 +135,13 @@ rl::TrainedPolicy load_policy(nb::handle name_or_path) {
   std::error_code none;
   const bool shipped =
       !std::filesystem::exists(given, none) && given.filename() == given && !given.has_extension();
-  return value_of(rl::load_policy(
-      shipped ? value_of(find_model_file("policies/" + given.string() + ".safetensors")) : given));
+  if (!shipped) return value_of(rl::load_policy(given));
+  const auto file = find_model_file("policies/" + given.string() + ".safetensors");
+  const std::vector<std::string> known{"reach"};
+  if (!file) {
+    refuse(msg::python_policy, given.string(), did_you_mean(given.string(), known), known.front());
+  }
+  return value_of(rl::load_policy(*file));
 }
 
 nb::object act(const rl::TrainedPolicy& self, nb::handle observation) {

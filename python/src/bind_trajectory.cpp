@@ -225,7 +225,8 @@ void bind_trajectory(nb::module_& m) {
             "fast as it can be, beside\n"
             "its corners as far as that is proved free; rows of joint values (n, dof) [rad or m] "
             "along the spline through\n"
-            "them. `share` of the limits of velocity and acceleration is used.");
+            "them, which must keep every joint in its range (else Impossible). `share` of the "
+            "limits of velocity and acceleration is used.");
   robot.def(
       "time_between", &time_between, nb::arg("start"), nb::arg("end"),
       nb::sig(
@@ -239,7 +240,8 @@ void bind_trajectory(nb::module_& m) {
                     "tuple[Motion, Array]"),
             "The fastest motion through rows of joint values (n, dof) [rad or m], which are passed "
             "without a stop; its shape\n"
-            "between them is free. Also when each is met [s], (n,).");
+            "between them is free, but must keep every joint in its range (else Impossible). Also "
+            "when each is met [s], (n,).");
 }
 
 }  // namespace mjarm::python

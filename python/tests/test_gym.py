@@ -97,6 +97,8 @@ def test_what_is_wrong(tmp_path):
     (tmp_path / "a.safetensors").write_bytes(b"no")
     with pytest.raises(mjarm.BadInput, match="a.safetensors"):
         mjarm.Policy.load(tmp_path / "a.safetensors")
+    with pytest.raises(mjarm.BadInput, match="did you mean .reach."):
+        mjarm.Policy.load("rech")
     with pytest.raises(mjarm.BadInput):
         mjarm.Policy.load("no_such")
     with pytest.raises(mjarm.BadInput, match="shape"):

@@ -87,3 +87,8 @@ def test_a_tool_is_led(robot):
             robot.tracker(**words)
     with pytest.raises(mjarm.BadInput, match="shape"):
         tracker.step(target, [0, 0])
+
+
+def test_what_is_not_at_the_pose_is_told_by_how_much(robot):
+    with pytest.raises(mjarm.BadInput, match="its tool is .* m and .* rad from the pose"):
+        robot.null_space(robot.fk(robot.home), robot.home + 0.5)
