@@ -136,6 +136,7 @@ Result<ViaMotion> time_via_points(std::span<const JointVec> waypoints, const Joi
   std::vector<Trajectory> legs;
   std::vector<double> times{0};
   for (std::size_t first = 0; first + 1 < points.size(); first += kLeg) {
+    if (is_stopped(options.stop)) return fail(stopped());
     const auto leg = points.subspan(first, std::min(kLeg + 1, points.size() - first));
     Result<ViaMotion> motion = stopping_at_each(leg, *bounds);
     if (!motion) return fail(std::move(motion.error()));

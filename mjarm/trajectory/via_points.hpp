@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "mjarm/core/result.hpp"
+#include "mjarm/core/stop.hpp"
 #include "mjarm/trajectory/trajectory.hpp"
 
 namespace mjarm {
@@ -12,6 +13,7 @@ namespace mjarm {
 struct ViaOptions {
   int iterations = 100;      ///< most steps of the optimiser, >= 0; it mostly stops after 10 to 20
   double joint_share = 1.0;  ///< share of the joints' velocity and acceleration limits, (0, 1]
+  StopCheck stop = {};       ///< asked every 512 waypoints; ends the work
 };
 
 /// A motion through waypoints.
@@ -28,7 +30,8 @@ struct ViaMotion {
 /// proportion to the number of waypoints. Mind that joint positions are not bounded between
 /// waypoints. Same input, same bytes.
 /// @param waypoints  [rad or m] at least one, finite, of equal size; equal neighbours are one.
-/// @return an error for bad sizes or numbers, limits that are not positive, bad options.
+/// @return an error for bad sizes or numbers, limits that are not positive, bad options; system
+///         where `stop` ended the work.
 [[nodiscard]] Result<ViaMotion> time_via_points(std::span<const JointVec> waypoints,
                                                 const JointLimits& limits,
                                                 const ViaOptions& options = {});

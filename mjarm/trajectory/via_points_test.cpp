@@ -273,6 +273,7 @@ TEST(ViaPoints, RefusesWhatMakesNoSense) {
   EXPECT_NE(why({zero, one}, alike(2, 1, 0, 1)).find("limits"), std::string::npos);
   EXPECT_NE(why({zero, one}, limits, {.iterations = -1}).find("-1"), std::string::npos);
   EXPECT_NE(why({zero, one}, limits, {.joint_share = 0}).find("share"), std::string::npos);
+  EXPECT_EQ(why({zero, one}, limits, {.stop = [] { return true; }}), stopped().what);
   // Finite numbers whose differences are not.
   const double huge = std::numeric_limits<double>::max();
   EXPECT_NE(why({-huge * one, huge * one}, limits), "no error");

@@ -91,10 +91,9 @@ PlannedMove time(const BoundRobot& robot, nb::handle what, double tool_speed, do
 nb::tuple time_via(const BoundRobot& robot, nb::handle waypoints, double share) {
   if (!(share > 0 && share <= 1)) refuse(msg::python_share, "share");
   const std::vector<JointVec> rows = robot.waypoints(waypoints, "waypoints");
-  ViaMotion motion = value_of([&] {
-    const nb::gil_scoped_release free;
-    return time_via_points(rows, robot.arm().limits, {.joint_share = share});
-  }());
+  ViaMotion motion = value_of(interruptible([&](const StopCheck& stop) {
+    return time_via_points(rows, robot.arm().limits, {.joint_share = share, .stop = stop});
+  }));
   check_range(robot, motion.trajectory);
   return nb::make_tuple(PlannedMove{.word = "via", .trajectory = std::move(motion.trajectory)},
                         array(std::move(motion.times), {rows.size()}));
