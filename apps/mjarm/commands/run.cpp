@@ -84,8 +84,8 @@ Result<std::optional<ContactReaction>> reaction_of(const Options& options) {
   return std::optional(*reaction);
 }
 
-/// A program that cannot be done makes no folder; where there is one, a report of it takes the place
-/// of that of an earlier run.
+/// A program that cannot be done makes no folder; where there is one, a report of it takes the
+/// place of that of an earlier run.
 Result<int> refuse(const program::LoadedProgram& loaded, const session::StageOptions& options) {
   Error why = program::first_fault(loaded);
   std::error_code missing;
