@@ -9,7 +9,6 @@
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/units.hpp"
 #include "mjarm/render/clear_view.hpp"
-#include "mjarm/sim/sim.hpp"
 
 namespace mjarm::render {
 namespace {
@@ -43,10 +42,8 @@ CameraView default_view(const Model& model) {
                        .distance = camera.distance,
                        .azimuth = camera.azimuth * kRadPerDeg,
                        .elevation = camera.elevation * kRadPerDeg};
-  Sim sim(model);
-  sim.reset_home();
-  const Snapshot start = sim.snapshot();
-  const std::vector<FramedBall> balls = moving_parts(model, {&start, 1});
+  const Snapshot home;
+  const std::vector<FramedBall> balls = moving_parts(model, {&home, 1});
   if (balls.empty()) return own;
   Eigen::Vector3d low = balls.front().p_W, high = low;
   for (const FramedBall& ball : balls) {

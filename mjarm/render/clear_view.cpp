@@ -7,6 +7,8 @@
 #include <memory>
 #include <numbers>
 
+#include "mjarm/model/home.hpp"
+
 namespace mjarm::render {
 namespace {
 
@@ -29,7 +31,9 @@ class Standing {
   bool set(const Snapshot& moment) {
     if (!d_) return false;
     mj_resetData(&m_, d_.get());
-    if (!moment.state.empty()) {
+    if (moment.state.empty()) {
+      std::ranges::copy(home_configuration(&m_), d_->qpos);
+    } else {
       if (static_cast<int>(moment.state.size()) != mj_stateSize(&m_, mjSTATE_INTEGRATION)) {
         return false;
       }

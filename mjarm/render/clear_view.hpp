@@ -13,7 +13,7 @@ namespace mjarm::render {
 /// What a picture of a motion is about: the corners of boxes round all shapes that are drawn of
 /// what moves, with what it stands on, at each of `moments`; and round the solids within its reach.
 /// Floors and the like are none. Empty where nothing of the model moves.
-/// @param moments  states of `model`; one without numbers is how it starts.
+/// @param moments  states of `model`; one without numbers is its home.
 [[nodiscard]] std::vector<FramedBall> moving_parts(const Model& model,
                                                    std::span<const Snapshot> moments);
 

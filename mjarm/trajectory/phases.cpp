@@ -58,8 +58,6 @@ Phases Phases::mirrored() const noexcept {
   return out;
 }
 
-/// The way is largest and smallest at its ends or where the velocity v + a x + jerk x^2 / 2 is 0:
-/// both of its roots, without cancellation.
 double Phases::way(double v) const noexcept {
   double way = 0;
   for (const JerkPhase& p : all()) {
@@ -70,6 +68,8 @@ double Phases::way(double v) const noexcept {
   return way;
 }
 
+/// The way is largest and smallest at its ends or where the velocity v + a x + jerk x^2 / 2 is 0:
+/// both of its roots, without cancellation.
 Extent Phases::extent(double v) const noexcept {
   Extent out{0, 0, 0, v};
   for (const JerkPhase& p : all()) {

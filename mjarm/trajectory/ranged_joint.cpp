@@ -103,9 +103,8 @@ std::optional<Phases> RangedJoint::blended(double duration) const noexcept {
   return out;
 }
 
-/// @param left  [rad or m] missing in the end. @return false where the changes of velocity alone
-/// take
-///              longer.
+/// @param left  [rad or m] missing in the end.
+/// @return false where the changes of velocity alone take longer.
 bool RangedJoint::cruise_at(double v, double duration, Phases& out, double& left) const noexcept {
   Phases back;
   out.clear();
